@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Reading and writing files of meshes and fields through VTK: target tetcast::vtk, library libtetcast-vtk. */
+#ifndef TETCAST_DATASET_H
+#define TETCAST_DATASET_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <tetcast/context.h>
+#include <tetcast/field.h>
+#include <tetcast/mesh.h>
+#include <tetcast/status.h>
+#include <tetcast/surface.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What a file holds: tetrahedra (other volumetric cells are cut into them on reading), and arrays over points and cells.
+ * Immutable; may be read from several threads at a time. */
+typedef struct TetcastDataset TetcastDataset;
+
+/* Reads a file; the format is told by content and extension. TETCAST_ERROR_IO: can't be opened. TETCAST_ERROR_DATA: truncated,
+ * damaged, no mesh, no cells, only surface cells, non-finite coordinates, indices out of range. The reader library's own complaints
+ * become part of the message. */
+TETCAST_API TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, TetcastDataset **dataset);
+
+/* Frees the dataset and sets *dataset to NULL. NULL and pointer to NULL do nothing. */
+TETCAST_API void tetcast_dataset_destroy(TetcastDataset **dataset);
+
+/* How many cells of type i = 0, 1, … the file has, largest count first; name e.g. "tetrahedron", "hexahedron", "triangle", static
+ * storage. False beyond the last. Counted as they are in the file, before anything is cut or left out. */
+TETCAST_API bool tetcast_dataset_cell_type(const TetcastDataset *dataset, int i, const char **name, int64_t *count);
+
+typedef struct TetcastDatasetArray {
+  const char *name;               /* valid while the dataset lives */
+  TetcastAssociation association; /* of points or cells */
+  int components;                 /* ≥ 1 */
+  const char *type;               /* as the file has it, e.g. "float64", "int32"; static storage */
+  bool active;                    /* the file marks it as its active scalars */
+} TetcastDatasetArray;
+
+/* Describes numeric array i = 0, 1, …, in the file's order, point arrays first. False beyond the last. */
+TETCAST_API bool tetcast_dataset_array(const TetcastDataset *dataset, int i, TetcastDatasetArray *array);
+
+/* Number and bounds of the file's points, and of its cells of any kind. */
+TETCAST_API int64_t tetcast_dataset_point_count(const TetcastDataset *dataset);
+TETCAST_API int64_t tetcast_dataset_cell_count(const TetcastDataset *dataset);
+
+/* The tetrahedra. Arrays may be the dataset's own: it must outlive the mesh, which the caller destroys. */
+TETCAST_API TetcastStatus tetcast_dataset_mesh(const TetcastDataset *dataset, TetcastMesh **mesh);
+
+/* The scalar that `selector` names: "NAME", "NAME:2" (component, from 0) or "NAME:mag" (Euclidean length); an array whose name
+ * contains a colon is found by its whole name first; a point array before a cell array of the same name. Without component,
+ * an array of several is taken by magnitude. NULL: the active scalars of the points, of the cells, else the first point array of one
+ * component, the first cell array of one component, the first array. An unknown name or component is TETCAST_ERROR_ARGUMENT and the
+ * message lists those there are. Cell arrays follow the tetrahedra the cells were cut into. The dataset must outlive the field,
+ * which the caller destroys. `name` (may be NULL) receives the selector that selects the same again, valid while the dataset lives. */
+TETCAST_API TetcastStatus tetcast_dataset_field(const TetcastDataset *dataset, const char *selector, TetcastField **field,
+                                                const char **name);
+
+/* Writes a mesh and its fields as .vtu (appended raw, zlib-compressed). names[i] names fields[i]. The file appears whole or not at
+ * all. Fields must have as many values as the mesh has vertices or cells. count may be 0, names and fields then NULL. */
+TETCAST_API TetcastStatus tetcast_dataset_write(TetcastContext *context, const char *path, const TetcastMesh *mesh, int count,
+                                                const char *const *names, const TetcastField *const *fields);
+
+/* Reads a closed or open surface of triangles (polygons are cut into them; coincident points merged exactly): .stl (ASCII and binary),
+ * .ply, .off, .obj, .vtp and legacy .vtk. Freed with tetcast_surface_release(). */
+TETCAST_API TetcastStatus tetcast_surface_read(TetcastContext *context, const char *path, TetcastSurface *surface);
+TETCAST_API void tetcast_surface_release(TetcastSurface *surface);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#ifndef TETCAST_FRAME_H
+#define TETCAST_FRAME_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include <tetcast/array.h>
+#include <tetcast/context.h>
+#include <tetcast/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A picture in memory: red, green, blue, alpha, colour premultiplied, row 0 at the top, values as composited. */
+typedef struct TetcastFrame TetcastFrame;
+
+typedef struct TetcastFrameDesc {
+  uint32_t cookie;
+  int64_t width, height; /* pixels, each in [1, 2^20] */
+  TetcastType type;      /* TETCAST_TYPE_FLOAT32 or TETCAST_TYPE_FLOAT64 (default); integration is in double either way */
+  void *pixels;          /* [height][width][4] of `type`, borrowed while the frame lives; NULL: the frame allocates */
+  int64_t row_stride;    /* bytes from row to row of `pixels`; 0: rows lie next to each other */
+} TetcastFrameDesc;
+
+TETCAST_API TetcastFrameDesc tetcast_frame_desc_default(void);
+
+TETCAST_API TetcastStatus tetcast_frame_create(TetcastContext *context, const TetcastFrameDesc *desc, TetcastFrame **frame);
+
+/* Frees the frame (not borrowed pixels) and sets *frame to NULL. NULL and pointer to NULL do nothing. */
+TETCAST_API void tetcast_frame_destroy(TetcastFrame **frame);
+
+TETCAST_API int64_t tetcast_frame_width(const TetcastFrame *frame);
+TETCAST_API int64_t tetcast_frame_height(const TetcastFrame *frame);
+TETCAST_API TetcastType tetcast_frame_type(const TetcastFrame *frame);
+TETCAST_API const void *tetcast_frame_pixels(const TetcastFrame *frame);
+TETCAST_API int64_t tetcast_frame_row_stride(const TetcastFrame *frame); /* bytes, never 0 */
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

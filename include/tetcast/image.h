@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Writing images through OpenImageIO: target tetcast::openimageio, library libtetcast-openimageio. */
+#ifndef TETCAST_IMAGE_H
+#define TETCAST_IMAGE_H
+
+#include <stdint.h>
+
+#include <tetcast/context.h>
+#include <tetcast/frame.h>
+#include <tetcast/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum TetcastPixelType {
+  TETCAST_PIXEL_DEFAULT = 0, /* what suits the format: PNG, JPEG uint8; EXR half; TIFF float; else the format's own */
+  TETCAST_PIXEL_UINT8,
+  TETCAST_PIXEL_UINT16,
+  TETCAST_PIXEL_HALF,
+  TETCAST_PIXEL_FLOAT,
+  TETCAST_PIXEL_DOUBLE
+} TetcastPixelType;
+
+typedef struct TetcastImageDesc {
+  uint32_t cookie;
+  TetcastPixelType pixel_type;
+  double background[4]; /* red, green, blue, alpha in [0, 1], not premultiplied: integer pixels are composited over it; floating-point
+                         * pixels hold the frame as it is, premultiplied, without background */
+} TetcastImageDesc;
+
+TETCAST_API TetcastImageDesc tetcast_image_desc_default(void);
+
+/* Writes the frame; the format is told by the path's extension (.png .exr .tif .tiff .jpg .jpeg and others that OpenImageIO
+ * has). A pixel type the format can't hold, an unknown extension: TETCAST_ERROR_ARGUMENT. The file appears whole or not at all. */
+TETCAST_API TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, const TetcastFrame *frame,
+                                              const TetcastImageDesc *desc);
+
+/* Whether `path` could be written with `desc` (NULL: default): extension known, pixel type possible, folder there and writable. For a
+ * check before long work; the same messages as writing. */
+TETCAST_API TetcastStatus tetcast_image_check(TetcastContext *context, const char *path, const TetcastImageDesc *desc);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

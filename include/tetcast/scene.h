@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#ifndef TETCAST_SCENE_H
+#define TETCAST_SCENE_H
+
+#include <stdint.h>
+
+#include <tetcast/camera.h>
+#include <tetcast/context.h>
+#include <tetcast/frame.h>
+#include <tetcast/transfer_function.h>
+#include <tetcast/volume.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A volume seen through a transfer function. Several scenes may share a volume, and render at the same time. */
+typedef struct TetcastScene TetcastScene;
+
+/* Makes a scene; the volume is referred to and must outlive it. */
+TETCAST_API TetcastStatus tetcast_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **scene);
+
+/* Frees the scene and sets *scene to NULL. NULL and pointer to NULL do nothing. */
+TETCAST_API void tetcast_scene_destroy(TetcastScene **scene);
+
+/* Sets or replaces the transfer function; what is needed of it is copied. Must not run while this scene renders. On error
+ * the scene keeps its former one. */
+TETCAST_API TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer_function);
+
+typedef struct TetcastRenderDesc {
+  uint32_t cookie;
+  int samples;              /* rays per pixel in [1, 2^16], a regular grid as near to square as the number allows; default 1: the centre */
+  TetcastProgress progress;
+} TetcastRenderDesc;
+
+TETCAST_API TetcastRenderDesc tetcast_render_desc_default(void);
+
+typedef struct TetcastRenderStats {
+  int64_t rays;         /* cast: width × height × samples */
+  int64_t segments;     /* cells crossed over a length > 0, summed over the rays */
+  int64_t lost;         /* rays whose walk ended before the boundary: 0, or a defect of tetcast */
+  const char *isa;      /* instruction set of the kernel that ran; static storage */
+  const char *precision; /* of the arithmetic: "double"; static storage */
+} TetcastRenderStats;
+
+/* Renders into every pixel of `frame`. `desc` and `stats` may be NULL. The volume must have a field and the scene a transfer
+ * function (TETCAST_ERROR_ARGUMENT). The result has the same bits for any number of threads. After an error or a
+ * cancelled call the frame's pixels are unspecified and the scene is as before. Calls with different frames may run at
+ * the same time, also on one scene. */
+TETCAST_API TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
+                                               TetcastFrame *frame, TetcastRenderStats *stats);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Making tetrahedra with TetGen: target tetcast::tetgen, library libtetcast-tetgen. TetGen is licensed under the AGPL, and so is what
+ * is linked with this library; libtetcast itself does not use it. */
+#ifndef TETCAST_TETGEN_H
+#define TETCAST_TETGEN_H
+
+#include <stdint.h>
+
+#include <tetcast/context.h>
+#include <tetcast/mesh.h>
+#include <tetcast/status.h>
+#include <tetcast/surface.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct TetcastTetgenDesc {
+  uint32_t cookie;
+  double quality;    /* largest ratio of circumradius to shortest edge, > 1; default 1.4; 0: as the surface's triangles come */
+  double max_volume; /* largest volume of a cell in the surface's unit of length cubed; 0: no limit */
+} TetcastTetgenDesc;
+
+TETCAST_API TetcastTetgenDesc tetcast_tetgen_desc_default(void);
+
+/* Fills a closed surface with tetrahedra. TETCAST_ERROR_DATA with a message that says which: open surface, self-intersection,
+ * non-finite or coincident input, nothing inside. Not to be called from two threads at a time: TetGen has global state. */
+TETCAST_API TetcastStatus tetcast_tetgen_mesh(TetcastContext *context, const TetcastSurface *surface, const TetcastTetgenDesc *desc,
+                                              TetcastMesh **mesh);
+
+/* The same from a file in one of TetGen's own formats: .poly, .smesh (with holes and facets of any number of corners), or .node/.ele
+ * (a mesh that TetGen made: read as it is). */
+TETCAST_API TetcastStatus tetcast_tetgen_mesh_file(TetcastContext *context, const char *path, const TetcastTetgenDesc *desc,
+                                                   TetcastMesh **mesh);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

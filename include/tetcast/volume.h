@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#ifndef TETCAST_VOLUME_H
+#define TETCAST_VOLUME_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include <tetcast/context.h>
+#include <tetcast/field.h>
+#include <tetcast/mesh.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A mesh prepared for casting rays: face adjacency, and the faces at which rays enter and leave in Embree.
+ * Made once per mesh; it keeps nothing of the mesh's arrays, which may go when it is made. Fields come and go. */
+typedef struct TetcastVolume TetcastVolume;
+
+typedef enum TetcastTraversal {
+  TETCAST_TRAVERSAL_SHELL = 0, /* Embree holds the boundary; inside, rays walk from cell to cell through shared faces */
+  TETCAST_TRAVERSAL_FACES      /* Embree holds every cell, whose four faces are tested one by one and the crossings sorted: slow,
+                                * needs no adjacency, for meshes whose parts overlap and for checking the walk */
+} TetcastTraversal;
+
+typedef struct TetcastVolumeDesc {
+  uint32_t cookie;
+  TetcastTraversal traversal;
+  TetcastProgress progress;
+} TetcastVolumeDesc;
+
+TETCAST_API TetcastVolumeDesc tetcast_volume_desc_default(void);
+
+/* Prepares a mesh. `desc` may be NULL (defaults). Cells with a vertex twice have no inside and are left out, as are
+ * cells whose four vertices an earlier cell has. A mesh without cells is TETCAST_ERROR_DATA. */
+TETCAST_API TetcastStatus tetcast_volume_create(TetcastContext *context, const TetcastMesh *mesh, const TetcastVolumeDesc *desc,
+                                                TetcastVolume **volume);
+
+/* Frees the volume and sets *volume to NULL. NULL and pointer to NULL do nothing. Scenes of it must be gone. */
+TETCAST_API void tetcast_volume_destroy(TetcastVolume **volume);
+
+/* Sets or replaces the scalar, copying it into the volume's own order; nothing else is rebuilt. The field must have as
+ * many values as the mesh had vertices or cells (TETCAST_ERROR_ARGUMENT). On error the volume keeps its former field.
+ * Must not run while a scene of this volume renders. */
+TETCAST_API TetcastStatus tetcast_volume_set_field(TetcastVolume *volume, const TetcastField *field);
+
+typedef struct TetcastVolumeInfo {
+  int64_t vertices;        /* of the mesh */
+  int64_t tetrahedra;      /* that can be crossed: the mesh's less those left out */
+  int64_t left_out;        /* cells left out, see tetcast_volume_create() */
+  int64_t shell_faces;     /* faces (shell) or cells (faces) that Embree holds */
+  size_t bytes;            /* resident memory: arrays of the volume and what Embree holds for it */
+  double bounds[6];        /* of its cells: xmin, xmax, ymin, ymax, zmin, zmax */
+  double cell_volume;      /* sum of the cells' volumes */
+  double boundary_area;    /* area of the faces that only one cell has */
+  double field_range[2];   /* smallest and largest finite value of the field, 0, 0 without one */
+  int64_t field_nonfinite; /* values that are NaN or infinite */
+  TetcastTraversal traversal;
+} TetcastVolumeInfo;
+
+TETCAST_API void tetcast_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
