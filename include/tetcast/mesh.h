@@ -50,7 +50,7 @@ typedef struct TetcastMeshHealth {
   int64_t boundary_faces;     /* faces of one cell only */
   int64_t nonmanifold_faces;  /* faces of three cells or more */
   int64_t components;         /* sets of cells connected through faces */
-  int64_t degenerate_cells;   /* volume exactly zero, or a vertex twice; volume is not in this case computed with rounding */
+  int64_t degenerate_cells;   /* volume zero as computed in double, or a vertex twice */
   int64_t inverted_cells;     /* negative volume: (v1 − v0) × (v2 − v0) · (v3 − v0) < 0. Order is free: worth a look only when mixed */
   int64_t duplicate_cells;    /* cells whose four vertices another cell before them has */
   int64_t unused_vertices;    /* vertices of no cell */

@@ -1,1 +1,187 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#include "optics/transfer.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+/* A list of knots: `width` doubles each, the scalar first. */
+typedef struct Knots {
+  const double *data;
+  int64_t count;
+  int width;
+} Knots;
+
+static TetcastStatus check_knots(TetcastContext *context, const Knots *knots, const char *what, double largest) {
+  if (!knots->data || knots->count < 1) {
+    return tc_error(context, TETCAST_ERROR_ARGUMENT, "transfer function: %s needs at least one knot", what);
+  }
+  for (int64_t i = 0; i < knots->count; ++i) {
+    const double *knot = knots->data + i * knots->width;
+    for (int k = 0; k < knots->width; ++k) {
+      if (!isfinite(knot[k])) {
+        return tc_error(context, TETCAST_ERROR_ARGUMENT, "transfer function: %s knot %" PRId64 " is not finite", what, i);
+      }
+      if (k > 0 && (knot[k] < 0 || knot[k] > largest)) {
+        return tc_error(context, TETCAST_ERROR_ARGUMENT, "transfer function: %s knot %" PRId64 " at %g is %s: %g", what, i,
+                        knot[0], knot[k] < 0 ? "negative" : "above 1", knot[k]);
+      }
+    }
+    if (i > 0 && knot[0] < knot[-knots->width]) {
+      return tc_error(context, TETCAST_ERROR_ARGUMENT, "transfer function: %s knots are not sorted: knot %" PRId64
+                      " at %g comes after %g", what, i, knot[0], knot[-knots->width]);
+    }
+    if (i > 1 && knot[0] == knot[-2 * knots->width]) {
+      return tc_error(context, TETCAST_ERROR_ARGUMENT, "transfer function: %s has more than two knots at %g", what, knot[0]);
+    }
+  }
+  return TETCAST_OK;
+}
+
+static void interpolate(const Knots *knots, int64_t i, double x, double *values) {
+  const double *a = knots->data + i * knots->width, *b = a + knots->width;
+  const double whole = b[0] - a[0], w = (x - a[0]) / whole, v = (b[0] - x) / whole;
+  for (int k = 1; k < knots->width; ++k) values[k - 1] = v * a[k] + w * b[k];
+}
+
+/* Values just above x. */
+static void limit_above(const Knots *knots, double x, double *values) {
+  int64_t i = 0; /* first knot > x */
+  while (i < knots->count && knots->data[i * knots->width] <= x) ++i;
+  if (i > 0 && (i == knots->count || knots->data[(i - 1) * knots->width] == x)) --i;
+  else if (i > 0) {
+    interpolate(knots, i - 1, x, values);
+    return;
+  }
+  memcpy(values, knots->data + i * knots->width + 1, (size_t)(knots->width - 1) * sizeof *values);
+}
+
+/* Values just below x. */
+static void limit_below(const Knots *knots, double x, double *values) {
+  int64_t i = 0; /* first knot ≥ x */
+  while (i < knots->count && knots->data[i * knots->width] < x) ++i;
+  if (i == knots->count) --i;
+  else if (i > 0 && knots->data[i * knots->width] != x) {
+    interpolate(knots, i - 1, x, values);
+    return;
+  }
+  memcpy(values, knots->data + i * knots->width + 1, (size_t)(knots->width - 1) * sizeof *values);
+}
+
+static TcOptics optics_limit(const Knots *extinction, const Knots *color, double x,
+                             void limit(const Knots *, double, double *)) {
+  TcOptics optics;
+  limit(extinction, x, &optics.extinction);
+  limit(color, x, optics.color);
+  return optics;
+}
+
+/* The distinct scalars of both lists. */
+static int64_t merge_knots(const Knots *a, const Knots *b, double *merged) {
+  int64_t i = 0, j = 0, n = 0;
+  while (i < a->count || j < b->count) {
+    const double x = i < a->count ? a->data[i * a->width] : INFINITY, y = j < b->count ? b->data[j * b->width] : INFINITY;
+    const double next = x <= y ? x : y;
+    if (x <= y) ++i;
+    else ++j;
+    if (n == 0 || merged[n - 1] != next) merged[n++] = next;
+  }
+  return n;
+}
+
+static void make_pieces(TetcastTransferFunction *transfer) {
+  const Knots color = {transfer->color, transfer->color_count, 4};
+  const Knots extinction = {transfer->extinction, transfer->extinction_count, 2};
+  const int64_t n = merge_knots(&color, &extinction, transfer->knots);
+  const double *x = transfer->knots;
+  for (int64_t i = 0; i <= n; ++i) {
+    TcPiece *piece = &transfer->piece[i];
+    piece->low = i > 0 ? x[i - 1] : -INFINITY;
+    piece->high = i < n ? x[i] : INFINITY;
+    if (i > 0) piece->at_low = optics_limit(&extinction, &color, x[i - 1], limit_above);
+    if (i < n) piece->at_high = optics_limit(&extinction, &color, x[i], limit_below);
+    if (i == 0) piece->at_low = piece->at_high;
+    if (i == n) piece->at_high = piece->at_low;
+  }
+  transfer->pieces = (TcPieces){n, transfer->knots, transfer->piece};
+}
+
+static double extinction_of(const TetcastTransferFunctionDesc *desc, double opacity) {
+  if (desc->opacity_model != TETCAST_OPACITY_UNIT_DISTANCE) return opacity / desc->unit_distance;
+  const double largest = 1 - 0x1p-53;
+  return -log1p(-(opacity < largest ? opacity : largest)) / desc->unit_distance;
+}
+
+static TetcastStatus check_desc(TetcastContext *context, const TetcastTransferFunctionDesc *desc) {
+  const Knots color = {desc->color, desc->color_count, 4};
+  TetcastStatus status = check_knots(context, &color, "color", INFINITY);
+  if (status) return status;
+  if ((desc->extinction != NULL) == (desc->opacity != NULL)) {
+    return tc_error(context, TETCAST_ERROR_ARGUMENT, "transfer function: either extinction or opacity is needed, not %s",
+                    desc->opacity ? "both" : "none");
+  }
+  if (desc->extinction) {
+    const Knots extinction = {desc->extinction, desc->extinction_count, 2};
+    return check_knots(context, &extinction, "extinction", INFINITY);
+  }
+  if (!(desc->unit_distance > 0) || !isfinite(desc->unit_distance)) {
+    return tc_error(context, TETCAST_ERROR_ARGUMENT, "transfer function: unit distance %g is not a positive length",
+                    desc->unit_distance);
+  }
+  const Knots opacity = {desc->opacity, desc->opacity_count, 2};
+  status = check_knots(context, &opacity, "opacity", 1);
+  for (int64_t i = 0; !status && i < desc->opacity_count; ++i) {
+    if (!isfinite(extinction_of(desc, desc->opacity[2 * i + 1]))) {
+      status = tc_error(context, TETCAST_ERROR_ARGUMENT, "transfer function: unit distance %g is too small: the extinction of opacity "
+                        "knot %" PRId64 " overflows", desc->unit_distance, i);
+    }
+  }
+  return status;
+}
+
+TetcastStatus tc_transfer_create(TetcastContext *context, const TetcastTransferFunctionDesc *desc, TetcastTransferFunction **out) {
+  const TetcastStatus status = check_desc(context, desc);
+  if (status) return status;
+  const int64_t count = desc->extinction ? desc->extinction_count : desc->opacity_count;
+  const int64_t most = desc->color_count + count;
+  TetcastTransferFunction *transfer;
+  if (!tc_allocate_array(context, (void **)&transfer, 1, sizeof *transfer, "transfer function")) return TETCAST_ERROR_MEMORY;
+  memset(transfer, 0, sizeof *transfer);
+  transfer->context = context;
+  transfer->color_count = desc->color_count;
+  transfer->extinction_count = count;
+  if (!tc_allocate_array(context, (void **)&transfer->color, desc->color_count, 4 * sizeof(double), "transfer function") ||
+      !tc_allocate_array(context, (void **)&transfer->extinction, count, 2 * sizeof(double), "transfer function") ||
+      !tc_allocate_array(context, (void **)&transfer->knots, most, sizeof(double), "transfer function") ||
+      !tc_allocate_array(context, (void **)&transfer->piece, most + 1, sizeof *transfer->piece, "transfer function")) {
+    tc_transfer_destroy(transfer);
+    return TETCAST_ERROR_MEMORY;
+  }
+  memcpy(transfer->color, desc->color, (size_t)desc->color_count * 4 * sizeof(double));
+  for (int64_t i = 0; i < count; ++i) {
+    const double *knot = (desc->extinction ? desc->extinction : desc->opacity) + 2 * i;
+    transfer->extinction[2 * i] = knot[0];
+    transfer->extinction[2 * i + 1] = desc->extinction ? knot[1] : extinction_of(desc, knot[1]);
+  }
+  make_pieces(transfer);
+  *out = transfer;
+  return TETCAST_OK;
+}
+
+TetcastStatus tc_transfer_copy(TetcastContext *context, const TetcastTransferFunction *source, TetcastTransferFunction **out) {
+  const TetcastTransferFunctionDesc desc = {.color = source->color,
+                                            .color_count = source->color_count,
+                                            .extinction = source->extinction,
+                                            .extinction_count = source->extinction_count};
+  return tc_transfer_create(context, &desc, out);
+}
+
+void tc_transfer_destroy(TetcastTransferFunction *transfer) {
+  if (!transfer) return;
+  TetcastContext *context = transfer->context;
+  tc_release(context, transfer->color);
+  tc_release(context, transfer->extinction);
+  tc_release(context, transfer->knots);
+  tc_release(context, transfer->piece);
+  tc_release(context, transfer);
+}

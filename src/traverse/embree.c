@@ -1,1 +1,172 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* The one file that knows Embree, 3.13 or 4. */
+#include "traverse/embree.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#if __has_include(<embree4/rtcore.h>) && !defined(TETCAST_EMBREE3)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <tetcast/version.h>
+
+/* Embree sees the sphere as the unit sphere. There, a line's start and direction rounded to float are off by at most
+ * 2^−24 each per coordinate; over a length of at most 4 + 4 that moves it by less than 2^−20. A box's own rounding adds 2^−24 and
+ * Embree's slab test, with RTC_SCENE_FLAG_ROBUST, a few 2^−24 of lengths ≤ 8. */
+#define MARGIN 0x1p-18
+
+struct TcEmbree {
+  TetcastContext *context;
+  RTCDevice device;
+  RTCScene scene;
+  double center[3], inverse_radius;
+  TcBoundsFunction *bounds;
+  const void *user;
+  atomic_llong bytes;
+};
+
+typedef struct Query {
+#if RTC_VERSION_MAJOR >= 4
+  struct RTCRayQueryContext context;
+#else
+  struct RTCIntersectContext context;
+#endif
+  TcCandidateFunction *candidate;
+  void *query;
+} Query;
+
+const char *tetcast_embree_version_string(void) {
+#define STRING_(x) #x
+#define STRING(x) STRING_(x)
+  return STRING(RTC_VERSION_MAJOR) "." STRING(RTC_VERSION_MINOR) "." STRING(RTC_VERSION_PATCH);
+}
+
+static void bounds_function(const struct RTCBoundsFunctionArguments *arguments) {
+  const TcEmbree *embree = arguments->geometryUserPtr;
+  double low[3], high[3];
+  embree->bounds(embree->user, arguments->primID, low, high);
+  float lower[3], upper[3];
+  for (int k = 0; k < 3; ++k) {
+    lower[k] = (float)((low[k] - embree->center[k]) * embree->inverse_radius - MARGIN);
+    upper[k] = (float)((high[k] - embree->center[k]) * embree->inverse_radius + MARGIN);
+  }
+  struct RTCBounds *box = arguments->bounds_o;
+  box->lower_x = lower[0], box->lower_y = lower[1], box->lower_z = lower[2];
+  box->upper_x = upper[0], box->upper_y = upper[1], box->upper_z = upper[2];
+}
+
+/* Hands the candidate on and never accepts a hit, so that Embree goes on to the next. */
+static void intersect_function(const struct RTCIntersectFunctionNArguments *arguments) {
+  if (!arguments->valid[0]) return;
+  const Query *query = (const Query *)(const void *)arguments->context;
+  query->candidate(query->query, arguments->primID);
+}
+
+static bool memory_monitor(void *user, ssize_t bytes, bool post) {
+  (void)post;
+  TcEmbree *embree = user;
+  atomic_fetch_add(&embree->bytes, (long long)bytes);
+  return true;
+}
+
+static TetcastStatus device_error(const TcEmbree *embree) {
+  const enum RTCError error = rtcGetDeviceError(embree->device);
+  if (error == RTC_ERROR_NONE) return TETCAST_OK;
+  if (error == RTC_ERROR_OUT_OF_MEMORY) return tc_error(embree->context, TETCAST_ERROR_MEMORY, "out of memory in Embree");
+  return tc_error(embree->context, TETCAST_ERROR_EMBREE, "Embree reports error %d", (int)error);
+}
+
+TetcastStatus tc_embree_create(TetcastContext *context, int64_t count, const double center[3], double radius,
+                               TcBoundsFunction *bounds, const void *user, TcEmbree **out) {
+  TcEmbree *embree;
+  if (!tc_allocate_array(context, (void **)&embree, 1, sizeof *embree, "Embree")) return TETCAST_ERROR_MEMORY;
+  memset(embree, 0, sizeof *embree);
+  embree->context = context;
+  memcpy(embree->center, center, sizeof embree->center);
+  embree->inverse_radius = 1 / radius;
+  embree->bounds = bounds;
+  embree->user = user;
+  atomic_init(&embree->bytes, 0);
+  char config[64];
+  snprintf(config, sizeof config, "threads=%d,set_affinity=0", tc_context_threads(context));
+  embree->device = rtcNewDevice(config);
+  if (!embree->device) {
+    const TetcastStatus status =
+      tc_error(context, TETCAST_ERROR_EMBREE, "Embree can't start: error %d", (int)rtcGetDeviceError(NULL));
+    tc_release(context, embree);
+    return status;
+  }
+  rtcSetDeviceMemoryMonitorFunction(embree->device, memory_monitor, embree);
+  embree->scene = rtcNewScene(embree->device);
+  rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
+  RTCGeometry geometry = rtcNewGeometry(embree->device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)count);
+  rtcSetGeometryUserData(geometry, embree);
+  rtcSetGeometryBoundsFunction(geometry, bounds_function, NULL);
+  rtcSetGeometryIntersectFunction(geometry, intersect_function);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(embree->scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(embree->scene);
+  const TetcastStatus status = device_error(embree);
+  if (status) {
+    tc_embree_destroy(embree);
+    return status;
+  }
+  *out = embree;
+  return TETCAST_OK;
+}
+
+void tc_embree_destroy(TcEmbree *embree) {
+  if (!embree) return;
+  rtcReleaseScene(embree->scene);
+  rtcReleaseDevice(embree->device);
+  tc_release(embree->context, embree);
+}
+
+size_t tc_embree_bytes(const TcEmbree *embree) {
+  const long long bytes = atomic_load(&embree->bytes);
+  return bytes > 0 ? (size_t)bytes : 0;
+}
+
+void tc_embree_query(const TcEmbree *embree, const double origin[3], const double direction[3], TcCandidateFunction *candidate,
+                     void *user) {
+  /* Start beyond the sphere: where the line is nearest to the centre, then two radii back. */
+  double p[3], along = 0;
+  for (int k = 0; k < 3; ++k) {
+    p[k] = (origin[k] - embree->center[k]) * embree->inverse_radius;
+    along += p[k] * direction[k];
+  }
+  struct RTCRayHit ray;
+  ray.ray.org_x = (float)(p[0] - (along + 2) * direction[0]);
+  ray.ray.org_y = (float)(p[1] - (along + 2) * direction[1]);
+  ray.ray.org_z = (float)(p[2] - (along + 2) * direction[2]);
+  ray.ray.dir_x = (float)direction[0];
+  ray.ray.dir_y = (float)direction[1];
+  ray.ray.dir_z = (float)direction[2];
+  ray.ray.tnear = 0;
+  ray.ray.tfar = 4;
+  ray.ray.time = 0;
+  ray.ray.mask = UINT32_MAX;
+  ray.ray.id = 0;
+  ray.ray.flags = 0;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  ray.hit.primID = RTC_INVALID_GEOMETRY_ID;
+  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  Query query = {.candidate = candidate, .query = user};
+#if RTC_VERSION_MAJOR >= 4
+  rtcInitRayQueryContext(&query.context);
+  struct RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
+  arguments.context = &query.context;
+  rtcIntersect1(embree->scene, &ray, &arguments);
+#else
+  rtcInitIntersectContext(&query.context);
+  rtcIntersect1(embree->scene, &query.context, &ray);
+#endif
+}

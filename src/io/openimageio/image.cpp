@@ -1,1 +1,298 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tetcast/image.h>
+#include <tetcast/version.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <OpenImageIO/imageio.h>
+
+#include "output.hpp"
+
+using OIIO::ImageOutput;
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+
+namespace {
+
+constexpr uint32_t desc_cookie = 0x7463696d; // "tcim"
+constexpr int64_t batch_rows = 64; // handed to OpenImageIO at a time: a multiple of what EXR and TIFF compress together
+
+// The frame's pixels, or the one pixel of a check.
+struct Pixels {
+  const void *data;
+  int64_t width, height, row_stride;
+  bool is_double;
+};
+
+// One error, already sent to the context.
+struct Failure {
+  TetcastStatus status;
+};
+
+[[noreturn]] void fail(TetcastContext *context, TetcastStatus status, const char *path, const std::string &reason) {
+  tetcast_context_error(context, status, "cannot write image '%s': %s", path, reason.c_str());
+  throw Failure{status};
+}
+
+std::string error_text(int error) {
+  switch (error) {
+  case ENOENT:
+    return "its folder does not exist";
+  case EINVAL:
+    return "it exists and is not a regular file";
+  default:
+    return std::strerror(error);
+  }
+}
+
+std::string extension_of(const std::string &path) {
+  const size_t slash = path.rfind('/');
+  const size_t dot = path.rfind('.');
+  if (dot == std::string::npos || (slash != std::string::npos && dot < slash))
+    return "";
+  std::string extension = path.substr(dot + 1);
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  return extension;
+}
+
+std::unique_ptr<ImageOutput> format_output(TetcastContext *context, const char *path) {
+  const std::string extension = extension_of(path);
+  if (extension.empty())
+    fail(context, TETCAST_ERROR_ARGUMENT, path, "the name has no extension to tell the format by, such as .png");
+  std::unique_ptr<ImageOutput> output = ImageOutput::create(extension);
+  (void)OIIO::geterror(); // or it would be printed at the end of the process
+  // Formats that open files by themselves hide errors of writing; "null" and "term" write no file.
+  if (!output || !output->supports("ioproxy") || !std::strcmp(output->format_name(), "null") ||
+      !std::strcmp(output->format_name(), "term"))
+    fail(context, TETCAST_ERROR_ARGUMENT, path,
+         "images of format '." + extension + "' are not supported; .png .exr .tif .jpg are");
+  return output;
+}
+
+const char *type_name(TetcastPixelType type) {
+  switch (type) {
+  case TETCAST_PIXEL_UINT8:
+    return "uint8";
+  case TETCAST_PIXEL_UINT16:
+    return "uint16";
+  case TETCAST_PIXEL_HALF:
+    return "half";
+  case TETCAST_PIXEL_FLOAT:
+    return "float";
+  case TETCAST_PIXEL_DOUBLE:
+    return "double";
+  default:
+    return "default";
+  }
+}
+
+TypeDesc requested_type(TetcastPixelType type, const std::string &format) {
+  switch (type) {
+  case TETCAST_PIXEL_UINT8:
+    return TypeDesc::UINT8;
+  case TETCAST_PIXEL_UINT16:
+    return TypeDesc::UINT16;
+  case TETCAST_PIXEL_HALF:
+    return TypeDesc::HALF;
+  case TETCAST_PIXEL_FLOAT:
+    return TypeDesc::FLOAT;
+  case TETCAST_PIXEL_DOUBLE:
+    return TypeDesc::DOUBLE;
+  default:
+    return format == "openexr" ? TypeDesc::HALF : format == "tiff" ? TypeDesc::FLOAT : TypeDesc::UINT8;
+  }
+}
+
+bool is_float(TypeDesc type) {
+  return type.basetype == TypeDesc::HALF || type.basetype == TypeDesc::FLOAT || type.basetype == TypeDesc::DOUBLE;
+}
+
+double component(const Pixels &pixels, int64_t y, int64_t i) {
+  const char *at = static_cast<const char *>(pixels.data) + y * pixels.row_stride + i * (pixels.is_double ? 8 : 4);
+  double wide;
+  float narrow;
+  if (pixels.is_double) {
+    std::memcpy(&wide, at, 8);
+    return wide;
+  }
+  std::memcpy(&narrow, at, 4);
+  return narrow;
+}
+
+template <class T> T quantize(double value, double top) {
+  return static_cast<T>(value > 0 ? std::floor(std::min(value, 1.0) * top + 0.5) : 0.0); // NaN becomes 0
+}
+
+// Composites rows [begin, end) over the background. With an alpha channel colours are not premultiplied, as PNG wants
+// them; without one a translucent background itself lies over black.
+template <class T>
+void integer_rows(const Pixels &pixels, int64_t begin, int64_t end, int channels, const double background[4], T *out) {
+  const double top = sizeof(T) == 1 ? 255.0 : 65535.0;
+  for (int64_t y = begin; y < end; y++) {
+    for (int64_t x = 0; x < pixels.width; x++, out += channels) {
+      const double behind = (1 - component(pixels, y, 4 * x + 3)) * background[3];
+      const double alpha = component(pixels, y, 4 * x + 3) + behind;
+      const double scale = channels == 4 ? (alpha > 0 ? 1 / alpha : 0) : 1;
+      for (int c = 0; c < 3; c++)
+        out[c] = quantize<T>((component(pixels, y, 4 * x + c) + behind * background[c]) * scale, top);
+      if (channels == 4)
+        out[3] = quantize<T>(alpha, top);
+    }
+  }
+}
+
+bool write_rows(ImageOutput &output, const Pixels &pixels, const double background[4]) {
+  const ImageSpec &spec = output.spec();
+  const bool floating = is_float(spec.format);
+  const TypeDesc frame_type = pixels.is_double ? TypeDesc::DOUBLE : TypeDesc::FLOAT;
+  std::vector<unsigned char> batch;
+  if (!floating)
+    batch.resize(size_t(pixels.width) * size_t(std::min(batch_rows, pixels.height)) * spec.pixel_bytes());
+  for (int64_t begin = 0; begin < pixels.height; begin += batch_rows) {
+    const int64_t end = std::min(begin + batch_rows, pixels.height);
+    bool done;
+    if (floating) {
+      const char *row = static_cast<const char *>(pixels.data) + begin * pixels.row_stride;
+      done = output.write_scanlines(int(begin), int(end), 0, frame_type, row, OIIO::stride_t(4 * frame_type.size()),
+                                    pixels.row_stride);
+    } else {
+      if (spec.format.size() == 1)
+        integer_rows(pixels, begin, end, spec.nchannels, background, batch.data());
+      else
+        integer_rows(pixels, begin, end, spec.nchannels, background, reinterpret_cast<uint16_t *>(batch.data()));
+      done = output.write_scanlines(int(begin), int(end), 0, spec.format, batch.data());
+    }
+    if (!done)
+      return false;
+  }
+  return true;
+}
+
+ImageSpec picture_spec(const ImageOutput &output, const Pixels &pixels, TypeDesc type, bool opaque) {
+  const bool alpha = output.supports("alpha") && (is_float(type) || !opaque);
+  ImageSpec spec(int(pixels.width), int(pixels.height), alpha ? 4 : 3, type);
+  spec.attribute("Software", "tetcast " TETCAST_VERSION_STRING);
+  if (alpha && !is_float(type))
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+  const std::string format = output.format_name();
+  // The same picture gives the same file. Left out, the time of writing would be put in; these are the blanks for
+  // "unknown".
+  if (format == "tiff" || format == "openexr")
+    spec.attribute("DateTime", "    :  :     :  :  ");
+  if (format == "tiff") {
+    spec.attribute("tiff:half", 1);
+    spec.attribute("tiff:Predictor", 1); // none: fewer readers know the one for floating point
+  } else if (format == "jpeg") {
+    spec.attribute("CompressionQuality", 95);
+    spec.attribute("jpeg:subsampling", "4:4:4"); // colour maps have edges
+  }
+  return spec;
+}
+
+// Writes the pixels beside `path`; `publish` makes them the file.
+void write_picture(TetcastContext *context, const char *path, const Pixels &pixels, const TetcastImageDesc &desc,
+                   bool publish) {
+  tetcast::NewFile file; // outlives the proxy, which outlives the output
+  std::unique_ptr<tetcast::CheckedProxy> proxy;
+  std::unique_ptr<ImageOutput> output = format_output(context, path);
+  output->threads(tetcast_context_threads(context));
+  if (const int error = file.open(path))
+    fail(context, TETCAST_ERROR_IO, path, error_text(error));
+  proxy = std::make_unique<tetcast::CheckedProxy>(file.file(), file.temporary());
+  const TypeDesc type = requested_type(desc.pixel_type, output->format_name());
+  const bool opaque = desc.background[3] >= 1;
+  ImageSpec spec = picture_spec(*output, pixels, type, opaque);
+  void *pointer = static_cast<OIIO::Filesystem::IOProxy *>(proxy.get());
+  spec.attribute("oiio:ioproxy", TypeDesc::PTR, &pointer);
+
+  bool done = output->open(file.temporary(), spec);
+  if (done) {
+    // A format that can't hold the type opens with another one. Without a wish, that is the format's own.
+    const TypeDesc actual = output->spec().format;
+    const bool usable = is_float(actual) || actual == TypeDesc::UINT8 || actual == TypeDesc::UINT16;
+    if (!usable || (desc.pixel_type != TETCAST_PIXEL_DEFAULT && actual != type)) {
+      write_rows(*output, pixels, desc.background); // libpng would print about a file without pixels
+      output->close();
+      (void)output->geterror();
+      fail(context, TETCAST_ERROR_ARGUMENT, path,
+           std::string("the format cannot hold pixels of type ") + type_name(desc.pixel_type));
+    }
+    if (publish && !output->supports("alpha") && (is_float(actual) || !opaque))
+      tetcast_context_message(context, TETCAST_SEVERITY_WARNING,
+                              "image '%s': the format has no alpha; the picture lies over black", path);
+    done = write_rows(*output, pixels, desc.background);
+    done = output->close() && done;
+  }
+  std::string reason = output->geterror();
+  if (proxy->error_number() != 0)
+    fail(context, TETCAST_ERROR_IO, path, error_text(proxy->error_number()));
+  if (!done)
+    fail(context, TETCAST_ERROR_IO, path, reason.empty() ? "OpenImageIO failed without saying why" : reason);
+  output.reset();
+  if (publish)
+    if (const int error = file.publish())
+      fail(context, TETCAST_ERROR_IO, path, error_text(error));
+}
+
+TetcastStatus guarded(TetcastContext *context, const char *path, const Pixels &pixels, const TetcastImageDesc *given,
+                      bool publish) {
+  const TetcastImageDesc desc = given ? *given : tetcast_image_desc_default();
+  if (desc.cookie != desc_cookie)
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
+                                 "the image description was not made by tetcast_image_desc_default()");
+  int pixel_type; // an enumeration that C code set may have any value
+  std::memcpy(&pixel_type, &desc.pixel_type, sizeof pixel_type);
+  if (pixel_type < TETCAST_PIXEL_DEFAULT || pixel_type > TETCAST_PIXEL_DOUBLE)
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "unknown pixel type %d", pixel_type);
+  for (double value : desc.background)
+    if (!(value >= 0 && value <= 1))
+      return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "background component %g is outside [0, 1]", value);
+  try {
+    write_picture(context, path, pixels, desc, publish);
+    return TETCAST_OK;
+  } catch (const Failure &failure) {
+    return failure.status;
+  } catch (const std::bad_alloc &) {
+    return tetcast_context_error(context, TETCAST_ERROR_MEMORY, "cannot write image '%s': out of memory", path);
+  } catch (const std::exception &error) {
+    return tetcast_context_error(context, TETCAST_ERROR_IO, "cannot write image '%s': %s", path, error.what());
+  } catch (...) {
+    return tetcast_context_error(context, TETCAST_ERROR_IO, "cannot write image '%s': unknown failure", path);
+  }
+}
+
+} // namespace
+
+TetcastImageDesc tetcast_image_desc_default(void) {
+  TetcastImageDesc desc = {};
+  desc.cookie = desc_cookie;
+  desc.pixel_type = TETCAST_PIXEL_DEFAULT;
+  for (double &value : desc.background)
+    value = 1; // opaque white
+  return desc;
+}
+
+TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, const TetcastFrame *frame,
+                                  const TetcastImageDesc *desc) {
+  if (!context || !path || !frame)
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
+                                 "tetcast_image_write: context, path and frame are needed");
+  const Pixels pixels = {tetcast_frame_pixels(frame), tetcast_frame_width(frame), tetcast_frame_height(frame),
+                         tetcast_frame_row_stride(frame), tetcast_frame_type(frame) == TETCAST_TYPE_FLOAT64};
+  return guarded(context, path, pixels, desc, true);
+}
+
+TetcastStatus tetcast_image_check(TetcastContext *context, const char *path, const TetcastImageDesc *desc) {
+  if (!context || !path)
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "tetcast_image_check: context and path are needed");
+  static const float pixel[4] = {0, 0, 0, 0};
+  return guarded(context, path, {pixel, 1, 1, sizeof pixel, false}, desc, false);
+}

@@ -1,1 +1,213 @@
 // SPDX-License-Identifier: Apache-2.0
+// Writing meshes and fields as .vtu.
+#include "common.hpp"
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkDoubleArray.h>
+#include <vtkErrorCode.h>
+#include <vtkFloatArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkSmartPointer.h>
+#include <vtkTypeInt32Array.h>
+#include <vtkTypeInt64Array.h>
+#include <vtkTypeUInt32Array.h>
+#include <vtkTypeUInt64Array.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include <tetcast/dataset.h>
+
+using namespace tcv;
+
+using DataArray = vtkSmartPointer<vtkDataArray>;
+
+static DataArray new_array(TetcastType type) {
+  switch (type) {
+  case TETCAST_TYPE_FLOAT32: return vtkSmartPointer<vtkFloatArray>::New();
+  case TETCAST_TYPE_FLOAT64: return vtkSmartPointer<vtkDoubleArray>::New();
+  case TETCAST_TYPE_INT32: return vtkSmartPointer<vtkTypeInt32Array>::New();
+  case TETCAST_TYPE_UINT32: return vtkSmartPointer<vtkTypeUInt32Array>::New();
+  case TETCAST_TYPE_INT64: return vtkSmartPointer<vtkTypeInt64Array>::New();
+  case TETCAST_TYPE_UINT64: return vtkSmartPointer<vtkTypeUInt64Array>::New();
+  case TETCAST_TYPE_NONE: break;
+  }
+  fail(TETCAST_ERROR_ARGUMENT, "array of unknown type %d", static_cast<int>(type));
+}
+
+// Refers to the values where they lie next to each other, else copies them.
+static DataArray wrap(const TetcastArray &values, int components) {
+  const DataArray array = new_array(values.type);
+  array->SetNumberOfComponents(components);
+  const int64_t tuple = type_size(values.type) * components;
+  if (values.count > 0 && (values.stride == 0 || values.stride == tuple)) {
+    array->SetVoidArray(const_cast<void *>(values.data), values.count * components, 1); // 1: VTK does not free it
+    return array;
+  }
+  array->SetNumberOfTuples(values.count);
+  char *target = static_cast<char *>(array->GetVoidPointer(0));
+  for (int64_t i = 0; i < values.count; ++i) {
+    std::memcpy(target + i * tuple, static_cast<const char *>(values.data) + i * values.stride, static_cast<size_t>(tuple));
+  }
+  return array;
+}
+
+template <typename Offsets> static vtkSmartPointer<vtkCellArray> cells_of(vtkDataArray *connectivity, int64_t count) {
+  vtkNew<Offsets> offsets;
+  offsets->SetNumberOfValues(count + 1);
+  for (int64_t i = 0; i <= count; ++i) offsets->SetValue(i, static_cast<typename Offsets::ValueType>(4 * i));
+  auto cells = vtkSmartPointer<vtkCellArray>::New();
+  if (!cells->SetData(offsets, connectivity)) fail(TETCAST_ERROR_DATA, "VTK refuses the mesh's indices");
+  return cells;
+}
+
+static vtkSmartPointer<vtkCellArray> make_cells(const TetcastMesh *mesh) {
+  const TetcastArray tetrahedra = tetcast_mesh_tetrahedra(mesh);
+  const int64_t count = tetrahedra.count;
+  if (tetrahedra.type == TETCAST_TYPE_INT32 && count <= INT32_MAX / 4) {
+    return cells_of<vtkTypeInt32Array>(wrap(tetrahedra, 4), count);
+  }
+  if (tetrahedra.type == TETCAST_TYPE_INT64) return cells_of<vtkTypeInt64Array>(wrap(tetrahedra, 4), count);
+  vtkNew<vtkTypeInt64Array> indices; // VTK knows no unsigned ones
+  indices->SetNumberOfComponents(4);
+  indices->SetNumberOfTuples(count);
+  for (int64_t i = 0; i < count; ++i) {
+    int64_t tetrahedron[4];
+    tetcast_mesh_tetrahedron(mesh, i, tetrahedron);
+    for (int j = 0; j < 4; ++j) indices->SetValue(4 * i + j, tetrahedron[j]);
+  }
+  return cells_of<vtkTypeInt64Array>(indices, count);
+}
+
+static void add_field(vtkUnstructuredGrid *grid, const TetcastMesh *mesh, const char *name, const TetcastField *field) {
+  const bool points = tetcast_field_association(field) == TETCAST_POINT;
+  const int64_t wanted = points ? tetcast_mesh_vertex_count(mesh) : tetcast_mesh_tetrahedron_count(mesh);
+  const TetcastArray values = tetcast_field_values(field);
+  if (values.count != wanted) {
+    fail(TETCAST_ERROR_ARGUMENT, "field '%s' has %lld values for %lld %s", name, static_cast<long long>(values.count),
+         static_cast<long long>(wanted), points ? "vertices" : "cells");
+  }
+  vtkDataSetAttributes *attributes = grid->GetPointData();
+  if (!points) attributes = grid->GetCellData();
+  if (attributes->HasArray(name)) fail(TETCAST_ERROR_ARGUMENT, "two fields are called '%s'", name);
+  const DataArray array = wrap(values, 1);
+  array->SetName(name);
+  attributes->AddArray(array);
+  if (!attributes->GetScalars()) attributes->SetActiveScalars(name); // the first is what readers show by default
+}
+
+static vtkSmartPointer<vtkUnstructuredGrid> make_grid(const TetcastMesh *mesh, int count, const char *const *names,
+                                                      const TetcastField *const *fields) {
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  vtkNew<vtkPoints> points;
+  points->SetData(wrap(tetcast_mesh_vertices(mesh), 3));
+  grid->SetPoints(points);
+  grid->SetCells(VTK_TETRA, make_cells(mesh));
+  for (int i = 0; i < count; ++i) {
+    if (!names[i] || !*names[i] || !fields[i]) fail(TETCAST_ERROR_ARGUMENT, "field %d or its name is missing", i);
+    add_field(grid, mesh, names[i], fields[i]);
+  }
+  return grid;
+}
+
+// A new, empty file beside the target, gone with this object unless it has become the target.
+class Temporary {
+public:
+  explicit Temporary(const char *target) : target_(target) {
+    static std::atomic<unsigned> counter{0};
+    struct stat status;
+    if (stat(target, &status) == 0 && !S_ISREG(status.st_mode)) {
+      fail(TETCAST_ERROR_IO, "%s: can't be written: is %s", target, S_ISDIR(status.st_mode) ? "a folder" : "not a regular file");
+    }
+    for (;;) {
+      path_ = target_ + ".part" + std::to_string(getpid()) + "-" + std::to_string(counter++);
+      const int file = open(path_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+      if (file >= 0) {
+        close(file);
+        return;
+      }
+      if (errno != EEXIST) fail(TETCAST_ERROR_IO, "%s: can't be written: %s", target, std::strerror(errno));
+    }
+  }
+  ~Temporary() {
+    if (!path_.empty()) unlink(path_.c_str());
+  }
+  Temporary(const Temporary &) = delete;
+  Temporary &operator=(const Temporary &) = delete;
+
+  const char *path() const { return path_.c_str(); }
+
+  // VTK doesn't look whether its last bytes reached the disk.
+  bool complete() const {
+    char tail[64];
+    FILE *file = std::fopen(path_.c_str(), "rb");
+    if (!file) return false;
+    const bool sought = std::fseek(file, -static_cast<long>(sizeof tail), SEEK_END) == 0;
+    const size_t size = sought ? std::fread(tail, 1, sizeof tail, file) : 0;
+    std::fclose(file);
+    return std::string(tail, size).find("</VTKFile>") != std::string::npos;
+  }
+
+  void become_target() {
+    if (std::rename(path_.c_str(), target_.c_str()) != 0) {
+      fail(TETCAST_ERROR_IO, "%s: can't be written: %s", target_.c_str(), std::strerror(errno));
+    }
+    path_.clear();
+  }
+
+private:
+  std::string target_, path_;
+};
+
+static void write_grid(const char *path, vtkUnstructuredGrid *grid) {
+  Temporary temporary(path);
+  const Capture capture;
+  vtkNew<vtkXMLUnstructuredGridWriter> writer;
+  writer->SetFileName(temporary.path());
+  writer->SetInputData(grid);
+  writer->SetDataModeToAppended();
+  writer->EncodeAppendedDataOff();
+  writer->SetCompressorTypeToZLib();
+  writer->SetHeaderTypeToUInt64();
+  errno = 0;
+  const bool written = writer->Write() == 1 && !capture.failed() && temporary.complete();
+  if (!written) {
+    const unsigned long code = writer->GetErrorCode();
+    const char *reason = !capture.error().empty() ? capture.error().c_str()
+                         : code != 0              ? vtkErrorCode::GetStringFromErrorCode(code)
+                                                  : "the file is incomplete; disk full?";
+    if (code == vtkErrorCode::OutOfDiskSpaceError) reason = "no space left on the disk";
+    fail(TETCAST_ERROR_IO, "%s: can't be written: %s", path, reason);
+  }
+  temporary.become_target();
+}
+
+TetcastStatus tetcast_dataset_write(TetcastContext *context, const char *path, const TetcastMesh *mesh, int count,
+                                    const char *const *names, const TetcastField *const *fields) {
+  if (!context || !path || !mesh || count < 0 || (count > 0 && (!names || !fields))) {
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
+                                 "tetcast_dataset_write: context, path, mesh, names and fields must not be NULL");
+  }
+  return fence(context, path, [&] {
+    vtkSmartPointer<vtkUnstructuredGrid> grid;
+    try {
+      grid = make_grid(mesh, count, names, fields);
+    } catch (Failure &failure) {
+      failure.text = std::string(path) + ": " + failure.text;
+      throw;
+    }
+    write_grid(path, grid);
+  });
+}

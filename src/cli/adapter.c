@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "adapter.h"
+
+#include <dlfcn.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <tetcast/version.h>
+
+#include "cli.h"
+#include "file.h"
+
+#define TEXT_OF(number) #number
+#define TEXT(number)    TEXT_OF(number)
+#define SONAME(name)    "libtetcast-" name ".so." TEXT(TETCAST_VERSION_MAJOR)
+
+typedef struct Symbol {
+  const char *name;
+  size_t offset; /* of the function pointer in the adapter's struct */
+} Symbol;
+
+#define CHECKED(result, name, parameters)                                                                              \
+  _Static_assert(_Generic(tetcast_##name, result(*) parameters : 1, default : 0), "tetcast_" #name " has another "     \
+                                                                                  "type");
+CLI_VTK_FUNCTIONS(CHECKED)
+CLI_TETGEN_FUNCTIONS(CHECKED)
+CLI_IMAGE_FUNCTIONS(CHECKED)
+
+#define VTK_SYMBOL(result, name, parameters)    {"tetcast_" #name, offsetof(CliVtk, name)},
+#define TETGEN_SYMBOL(result, name, parameters) {"tetcast_" #name, offsetof(CliTetgen, name)},
+#define IMAGE_SYMBOL(result, name, parameters)  {"tetcast_" #name, offsetof(CliImage, name)},
+
+static const Symbol vtk_symbols[] = {CLI_VTK_FUNCTIONS(VTK_SYMBOL){NULL, 0}};
+static const Symbol tetgen_symbols[] = {CLI_TETGEN_FUNCTIONS(TETGEN_SYMBOL){NULL, 0}};
+static const Symbol image_symbols[] = {CLI_IMAGE_FUNCTIONS(IMAGE_SYMBOL){NULL, 0}};
+
+/* Adapters lie beside libtetcast. A sanitizer's dlopen() does not see the command's own RUNPATH, so it is not left to
+ * that alone. */
+static void *open_adapter(const char *soname) {
+  Dl_info core;
+  const char *(*known)(void) = tetcast_version_string;
+  void *address;
+  memcpy(&address, &known, sizeof address);
+  char *path = NULL;
+  if (dladdr(address, &core) && core.dli_fname) {
+    char *folder = cli_path_folder(core.dli_fname);
+    path = cli_print("%s/%s", folder, soname);
+    free(folder);
+  }
+  void *library = dlopen(path && access(path, F_OK) == 0 ? path : soname, RTLD_NOW | RTLD_LOCAL);
+  free(path);
+  return library;
+}
+
+static bool load(const char *soname, const char *purpose, const Symbol *symbols, void *adapter) {
+  void *library = open_adapter(soname);
+  if (!library) {
+    cli_error("%s needs the adapter %s, which cannot be loaded: %s", purpose, soname, dlerror());
+    return false;
+  }
+  for (; symbols->name; symbols++) {
+    void *function = dlsym(library, symbols->name);
+    if (!function) {
+      cli_error("%s is of another version of tetcast: %s is missing", soname, symbols->name);
+      return false;
+    }
+    memcpy((char *)adapter + symbols->offset, &function, sizeof function);
+  }
+  return true;
+}
+
+const CliVtk *cli_vtk(void) {
+  static CliVtk vtk;
+  return vtk.dataset_read || load(SONAME("vtk"), "reading and writing meshes", vtk_symbols, &vtk) ? &vtk : NULL;
+}
+
+const CliTetgen *cli_tetgen(void) {
+  static CliTetgen tetgen;
+  return tetgen.tetgen_mesh || load(SONAME("tetgen"), "making a mesh", tetgen_symbols, &tetgen) ? &tetgen : NULL;
+}
+
+const CliImage *cli_image(void) {
+  static CliImage image;
+  return image.image_write || load(SONAME("openimageio"), "writing an image", image_symbols, &image) ? &image : NULL;
+}

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The adapters, loaded when a run needs them and not before: VTK alone brings hundreds of libraries. */
+#ifndef TETCAST_CLI_ADAPTER_H
+#define TETCAST_CLI_ADAPTER_H
+
+#include <tetcast/dataset.h>
+#include <tetcast/image.h>
+#include <tetcast/tetgen.h>
+
+/* X(result, name, parameters) for each function tetcast_NAME of an adapter; adapter.c checks them against the headers.
+ */
+#define CLI_VTK_FUNCTIONS(X)                                                                                           \
+  X(TetcastStatus, dataset_read, (TetcastContext *, const char *, TetcastDataset **))                                  \
+  X(void, dataset_destroy, (TetcastDataset **))                                                                        \
+  X(bool, dataset_cell_type, (const TetcastDataset *, int, const char **, int64_t *))                                  \
+  X(bool, dataset_array, (const TetcastDataset *, int, TetcastDatasetArray *))                                         \
+  X(int64_t, dataset_point_count, (const TetcastDataset *))                                                            \
+  X(int64_t, dataset_cell_count, (const TetcastDataset *))                                                             \
+  X(TetcastStatus, dataset_mesh, (const TetcastDataset *, TetcastMesh **))                                             \
+  X(TetcastStatus, dataset_field, (const TetcastDataset *, const char *, TetcastField **, const char **))              \
+  X(TetcastStatus, dataset_write,                                                                                      \
+    (TetcastContext *, const char *, const TetcastMesh *, int, const char *const *, const TetcastField *const *))      \
+  X(TetcastStatus, surface_read, (TetcastContext *, const char *, TetcastSurface *))                                   \
+  X(void, surface_release, (TetcastSurface *))
+
+#define CLI_TETGEN_FUNCTIONS(X)                                                                                        \
+  X(TetcastTetgenDesc, tetgen_desc_default, (void))                                                                    \
+  X(TetcastStatus, tetgen_mesh, (TetcastContext *, const TetcastSurface *, const TetcastTetgenDesc *, TetcastMesh **)) \
+  X(TetcastStatus, tetgen_mesh_file, (TetcastContext *, const char *, const TetcastTetgenDesc *, TetcastMesh **))
+
+#define CLI_IMAGE_FUNCTIONS(X)                                                                                         \
+  X(TetcastImageDesc, image_desc_default, (void))                                                                      \
+  X(TetcastStatus, image_write, (TetcastContext *, const char *, const TetcastFrame *, const TetcastImageDesc *))      \
+  X(TetcastStatus, image_check, (TetcastContext *, const char *, const TetcastImageDesc *))
+
+/* The functions under the adapter's names without "tetcast_", e.g. vtk->dataset_read(…). */
+#define CLI_MEMBER(result, name, parameters) result(*name) parameters;
+typedef struct CliVtk {
+  CLI_VTK_FUNCTIONS(CLI_MEMBER)
+} CliVtk;
+typedef struct CliTetgen {
+  CLI_TETGEN_FUNCTIONS(CLI_MEMBER)
+} CliTetgen;
+typedef struct CliImage {
+  CLI_IMAGE_FUNCTIONS(CLI_MEMBER)
+} CliImage;
+#undef CLI_MEMBER
+
+/* The adapter, loaded at the first call; NULL after a message if it is missing. */
+const CliVtk *cli_vtk(void);
+const CliTetgen *cli_tetgen(void);
+const CliImage *cli_image(void);
+
+#endif

@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "cli.h"
+
+#include <ctype.h>
+#include <getopt.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "progress.h"
+
+static struct {
+  bool quiet;
+  const char *place;
+  atomic_bool failed; /* an error has been shown */
+} messages;
+
+void cli_set_quiet(bool quiet) {
+  messages.quiet = quiet;
+}
+
+bool cli_quiet(void) {
+  return messages.quiet;
+}
+
+void cli_set_place(const char *place) {
+  messages.place = place;
+}
+
+/* One call of fprintf, as lines may come from several threads; control characters of file and array names stay out of
+ * the line. */
+static void show(const char *kind, const char *place, const char *text) {
+  char *line = cli_print("%s%s%s", place ? place : "", place ? ": " : "", text);
+  for (char *c = line; *c; c++)
+    if (iscntrl((unsigned char)*c))
+      *c = ' ';
+  cli_progress_clear();
+  fprintf(stderr, "tetcast: %s: %s\n", kind, line);
+  free(line);
+}
+
+static void show_error(const char *place, const char *text) {
+  if (!cli_interrupted() && !atomic_exchange(&messages.failed, true))
+    show("error", place, text);
+}
+
+static void receive(void *user, TetcastSeverity severity, const char *text) {
+  (void)user;
+  if (severity == TETCAST_SEVERITY_ERROR)
+    show_error(messages.place, text);
+  else if (severity == TETCAST_SEVERITY_WARNING && !messages.quiet)
+    show("warning", NULL, text);
+}
+
+static char *print_list(const char *format, va_list list) {
+  char *text = NULL;
+  if (vasprintf(&text, format, list) < 0) {
+    fputs("tetcast: error: out of memory\n", stderr);
+    exit(CLI_FAILED);
+  }
+  return text;
+}
+
+char *cli_print(const char *format, ...) {
+  va_list list;
+  va_start(list, format);
+  char *text = print_list(format, list);
+  va_end(list);
+  return text;
+}
+
+void cli_error(const char *format, ...) {
+  va_list list;
+  va_start(list, format);
+  char *text = print_list(format, list);
+  va_end(list);
+  show_error(NULL, text);
+  free(text);
+}
+
+void cli_warning(const char *format, ...) {
+  if (messages.quiet)
+    return;
+  va_list list;
+  va_start(list, format);
+  char *text = print_list(format, list);
+  va_end(list);
+  show("warning", NULL, text);
+  free(text);
+}
+
+int cli_usage_error(const char *command, const char *format, ...) {
+  va_list list;
+  va_start(list, format);
+  char *text = print_list(format, list);
+  va_end(list);
+  cli_error("%s (see tetcast %s%s--help)", text, command, *command ? " " : "");
+  free(text);
+  return CLI_USAGE;
+}
+
+int cli_bad_option(const char *command, int result, char **argv) {
+  const char *option = argv[optind - 1];
+  if (optopt > 0 && optopt < 128 && option[1] != '-')
+    return cli_usage_error(command, result == ':' ? "option -%c needs an argument" : "unknown option -%c", optopt);
+  const int length = (int)strcspn(option, "=");
+  if (result == ':')
+    return cli_usage_error(command, "option %s needs an argument", option);
+  if (optopt != 0)
+    return cli_usage_error(command, "option %.*s takes no argument", length, option);
+  return cli_usage_error(command, "unknown or ambiguous option %.*s", length, option);
+}
+
+TetcastContext *cli_context_create(int threads) {
+  TetcastContextDesc desc = tetcast_context_desc_default();
+  desc.threads = threads;
+  desc.message = receive;
+  TetcastContext *context = NULL;
+  const TetcastStatus status = tetcast_context_create(&desc, &context);
+  if (status != TETCAST_OK)
+    cli_failed(status);
+  return context;
+}
+
+int cli_failed(TetcastStatus status) {
+  if (cli_interrupted())
+    return 128 + cli_interrupted();
+  show_error(messages.place, tetcast_status_string(status));
+  return CLI_FAILED;
+}
+
+bool cli_parse_number(const char *text, double *value) {
+  if (!*text || text[strspn(text, "+-.0123456789eE")])
+    return false;
+  char *end;
+  *value = strtod(text, &end);
+  return *end == '\0' && isfinite(*value);
+}
+
+int cli_parse_numbers(const char *text, char separator, int most, double *values) {
+  const char separators[] = {separator, '\0'};
+  for (int count = 0; count < most;) {
+    char item[64];
+    const size_t length = strcspn(text, separators);
+    if (length >= sizeof item)
+      return 0;
+    memcpy(item, text, length);
+    item[length] = '\0';
+    if (!cli_parse_number(item, &values[count++]))
+      return 0;
+    if (!text[length])
+      return count;
+    text += length + 1;
+  }
+  return 0;
+}
+
+void *cli_allocate(size_t size) {
+  void *memory = malloc(size ? size : 1);
+  if (!memory) {
+    fputs("tetcast: error: out of memory\n", stderr);
+    exit(CLI_FAILED);
+  }
+  return memory;
+}
+
+char *cli_duplicate(const char *text) {
+  const size_t size = strlen(text) + 1;
+  return memcpy(cli_allocate(size), text, size);
+}
+
+double cli_seconds(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+int cli_finish_output(void) {
+  if (fflush(stdout) == 0 && !ferror(stdout))
+    return CLI_DONE;
+  cli_error("cannot write to standard output");
+  return CLI_FAILED;
+}

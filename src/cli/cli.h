@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the commands share: messages, exit codes, strict parsing of arguments. The command uses libtetcast's public
+ * headers only. */
+#ifndef TETCAST_CLI_H
+#define TETCAST_CLI_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <tetcast/context.h>
+
+enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_USAGE = 2 }; /* exit codes; 128 + signal when interrupted */
+
+/* The commands: argv[0] is the command's name, getopt's global state is fresh; they return the exit code. */
+int tetcast_cli_render(int argc, char **argv);
+int tetcast_cli_info(int argc, char **argv);
+int tetcast_cli_mesh(int argc, char **argv);
+
+/* One line on stderr, "tetcast: error: …" or "tetcast: warning: …". Only the first error of a run is shown, and none
+ * after an interruption; warnings are dropped after cli_set_quiet(true). */
+void cli_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
+void cli_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));
+void cli_set_quiet(bool quiet);
+bool cli_quiet(void);
+
+/* Puts "PLACE: " before the library's errors (NULL: nothing): for calls whose arguments came from a file. */
+void cli_set_place(const char *place);
+
+/* An error in the way the command was called; names the command's --help and returns CLI_USAGE. */
+int cli_usage_error(const char *command, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* The message for the option that getopt_long() refused by returning '?' or ':' (with opterr = 0 and an option string
+ * that starts with ':'); returns CLI_USAGE. */
+int cli_bad_option(const char *command, int result, char **argv);
+
+/* A context whose messages go to stderr as above, or NULL after a message. threads 0: all processors. */
+TetcastContext *cli_context_create(int threads);
+
+/* The exit code for a status that is not TETCAST_OK; says what it is if the library has not. */
+int cli_failed(TetcastStatus status);
+
+/* Whether all of `text` is a finite decimal number. No blanks, no "inf", no hexadecimal; independent of the locale. */
+bool cli_parse_number(const char *text, double *value);
+
+/* Numbers with `separator` between them, e.g. "1,2,3": how many there are, or 0 if the text is anything else or has
+ * more than `most`. */
+int cli_parse_numbers(const char *text, char separator, int most, double *values);
+
+/* malloc(), strdup() and asprintf() that end the process with a message when there is no memory. */
+void *cli_allocate(size_t size);
+char *cli_duplicate(const char *text);
+char *cli_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* Seconds of a clock that only goes forward. */
+double cli_seconds(void);
+
+/* Flushes standard output; CLI_DONE, or CLI_FAILED after a message if something could not be written. */
+int cli_finish_output(void);
+
+#endif

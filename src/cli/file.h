@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Small text files that appear whole or not at all, and paths. */
+#ifndef TETCAST_CLI_FILE_H
+#define TETCAST_CLI_FILE_H
+
+#include <stdbool.h>
+
+/* Writes a text beside `path` and renames it; devices and pipes are written to directly. False after a message. */
+bool cli_file_write(const char *path, const char *text);
+
+/* Whether cli_file_write() could start: the folder is there and writable. False after a message. */
+bool cli_file_check(const char *path);
+
+/* The following return memory for free(). */
+
+/* The folder of a path without the last slash: "." for a bare name, "/" for the root. */
+char *cli_path_folder(const char *path);
+
+/* `path` as seen from `folder`: itself if it is absolute. */
+char *cli_path_join(const char *folder, const char *path);
+
+/* A path to the existing file `path` that works from the existing `folder`: relative if they share more than the root.
+ */
+char *cli_path_relative(const char *folder, const char *path);
+
+/* The last part of a path, inside it. */
+const char *cli_path_name(const char *path);
+
+#endif

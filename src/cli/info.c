@@ -1,0 +1,209 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "info.h"
+
+#include <getopt.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <tetcast/tetcast.h>
+
+#include "cli.h"
+
+static const char help_text[] =
+    "Usage: tetcast info INPUT [--json]\n"
+    "\n"
+    "Shows what is in a mesh file: cells by type, arrays with their ranges and numbers of NaN and infinite\n"
+    "values, bounds, and the health of the tetrahedra that the cells are cut into.\n"
+    "\n"
+    "      --json   as JSON, for scripts\n"
+    "  -h, --help   this text\n"
+    "\n"
+    "Values of cell arrays are counted per tetrahedron. In the list of health only the number of components and of\n"
+    "boundary faces are properties of every mesh; anything else is worth a look, but none keeps it from being "
+    "rendered.\n"
+    "\n"
+    "Example:\n"
+    "  tetcast info flow.vtu\n";
+
+static TetcastStatus get_range(const Info *info, const char *selector, InfoRange *range) {
+  TetcastField *field = NULL;
+  const TetcastStatus status = info->vtk->dataset_field(info->dataset, selector, &field, NULL);
+  if (status == TETCAST_OK) {
+    double bounds[2];
+    tetcast_field_range(field, bounds, &range->nonfinite);
+    range->low = bounds[0];
+    range->high = bounds[1];
+  }
+  tetcast_field_destroy(&field);
+  return status;
+}
+
+static TetcastStatus get_ranges(const Info *info, InfoArray *array) {
+  const char *name = array->about.name;
+  if (array->about.components == 1) {
+    array->components = 1;
+    return get_range(info, name, &array->component[0]);
+  }
+  array->components = array->about.components <= INFO_COMPONENTS ? array->about.components : 0;
+  TetcastStatus status = TETCAST_OK;
+  for (int i = 0; i <= array->components && status == TETCAST_OK; i++) {
+    const bool last = i == array->components;
+    char *selector = last ? cli_print("%s:mag", name) : cli_print("%s:%d", name, i);
+    status = get_range(info, selector, last ? &array->magnitude : &array->component[i]);
+    free(selector);
+  }
+  return status;
+}
+
+static TetcastStatus get_arrays(Info *info) {
+  TetcastDatasetArray about;
+  while (info->vtk->dataset_array(info->dataset, info->array_count, &about))
+    info->array_count++;
+  info->arrays = cli_allocate(sizeof *info->arrays * (size_t)info->array_count);
+  memset(info->arrays, 0, sizeof *info->arrays * (size_t)info->array_count);
+  for (int i = 0; i < info->array_count; i++) {
+    InfoArray *array = &info->arrays[i];
+    info->vtk->dataset_array(info->dataset, i, &array->about);
+    array->reachable = true;
+    for (int j = 0; j < i; j++)
+      if (!strcmp(info->arrays[j].about.name, array->about.name))
+        array->reachable = false;
+    const TetcastStatus status = array->reachable ? get_ranges(info, array) : TETCAST_OK;
+    if (status != TETCAST_OK)
+      return status;
+  }
+  return TETCAST_OK;
+}
+
+static TetcastStatus get_info(Info *info, TetcastContext *context) {
+  TetcastStatus status = info->vtk->dataset_read(context, info->path, &info->dataset);
+  if (status == TETCAST_OK)
+    status = get_arrays(info);
+  TetcastMesh *mesh = NULL;
+  if (status == TETCAST_OK)
+    status = info->vtk->dataset_mesh(info->dataset, &mesh);
+  if (status == TETCAST_OK) {
+    info->tetrahedra = tetcast_mesh_tetrahedron_count(mesh);
+    info->vertices = tetcast_mesh_vertex_count(mesh);
+    tetcast_mesh_bounds(mesh, info->bounds);
+    status = tetcast_mesh_health(context, mesh, &info->health);
+  }
+  tetcast_mesh_destroy(&mesh);
+  return status;
+}
+
+static void print_range(const InfoRange *range, const char *label) {
+  printf("%-3s [%.9g, %.9g]", label, range->low, range->high);
+  if (range->nonfinite > 0)
+    printf("  %" PRId64 " NaN or infinite", range->nonfinite);
+  putchar('\n');
+}
+
+static void print_arrays(const Info *info) {
+  int width = 4;
+  for (int i = 0; i < info->array_count; i++) {
+    const int length = (int)strlen(info->arrays[i].about.name);
+    width = length > width && length <= 40 ? length : width;
+  }
+  printf("arrays        %s\n", info->array_count ? "" : "none");
+  for (int i = 0; i < info->array_count; i++) {
+    const InfoArray *array = &info->arrays[i];
+    const int indent = printf("  %-5s  %-*s  %-7s  ", array->about.association == TETCAST_CELL ? "cell" : "point",
+                              width, array->about.name, array->about.type);
+    if (!array->reachable) {
+      puts("hidden by another array of the same name");
+    } else if (array->about.components == 1) {
+      print_range(&array->component[0], "");
+    } else {
+      for (int c = 0; c < array->components; c++) {
+        char label[16];
+        snprintf(label, sizeof label, ":%d", c);
+        print_range(&array->component[c], label);
+        printf("%*s", indent, "");
+      }
+      print_range(&array->magnitude, "mag");
+    }
+  }
+}
+
+static void print_health(const TetcastMeshHealth *health) {
+  const struct {
+    const char *name;
+    int64_t count;
+  } rows[] = {{"components", health->components},
+              {"boundary faces", health->boundary_faces},
+              {"non-manifold faces", health->nonmanifold_faces},
+              {"degenerate cells", health->degenerate_cells},
+              {"inverted cells", health->inverted_cells},
+              {"duplicate cells", health->duplicate_cells},
+              {"unused vertices", health->unused_vertices},
+              {"coincident vertices", health->coincident_vertices}};
+  puts("health");
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    printf("  %-20s %" PRId64 "\n", rows[i].name, rows[i].count);
+  printf("  %-20s %.9g\n", "volume", health->volume);
+  printf("  %-20s %.9g\n", "boundary area", health->boundary_area);
+}
+
+static void print_text(const Info *info) {
+  printf("file          %s\n", info->path);
+  printf("points        %" PRId64 "\n", info->vtk->dataset_point_count(info->dataset));
+  printf("cells         %" PRId64 "\n", info->vtk->dataset_cell_count(info->dataset));
+  const char *name;
+  int64_t count;
+  for (int i = 0; info->vtk->dataset_cell_type(info->dataset, i, &name, &count); i++)
+    printf("  %-20s %" PRId64 "\n", name, count);
+  printf("tetrahedra    %" PRId64 "\n", info->tetrahedra);
+  for (int i = 0; i < 3; i++)
+    printf("%-13s %c [%.9g, %.9g]\n", i ? "" : "bounds", "xyz"[i], info -> bounds[2 * i], info -> bounds[2 * i + 1]);
+  print_arrays(info);
+  print_health(&info->health);
+}
+
+static int parse(int argc, char **argv, bool *json, const char **path) {
+  static const struct option words[] = {
+      {"json", no_argument, NULL, 'j'}, {"help", no_argument, NULL, 'h'}, {NULL, 0, NULL, 0}};
+  optind = 0;
+  int code;
+  while ((code = getopt_long(argc, argv, ":h", words, NULL)) != -1) {
+    if (code == 'h') {
+      fputs(help_text, stdout);
+      return cli_finish_output();
+    }
+    if (code != 'j')
+      return cli_bad_option("info", code, argv);
+    *json = true;
+  }
+  if (optind == argc)
+    return cli_usage_error("info", "no input given");
+  if (optind + 1 < argc)
+    return cli_usage_error("info", "more than one input: '%s' and '%s'", argv[optind], argv[optind + 1]);
+  *path = argv[optind];
+  return -1;
+}
+
+int tetcast_cli_info(int argc, char **argv) {
+  bool json = false;
+  Info info = {0};
+  int code = parse(argc, argv, &json, &info.path);
+  if (code >= 0)
+    return code;
+  TetcastContext *context = cli_context_create(0);
+  info.vtk = context ? cli_vtk() : NULL;
+  code = CLI_FAILED;
+  if (info.vtk) {
+    const TetcastStatus status = get_info(&info, context);
+    if (status == TETCAST_OK) {
+      (json ? info_print_json : print_text)(&info);
+      code = cli_finish_output();
+    } else {
+      code = cli_failed(status);
+    }
+    info.vtk->dataset_destroy(&info.dataset);
+  }
+  free(info.arrays);
+  tetcast_context_destroy(&context);
+  return code;
+}

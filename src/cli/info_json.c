@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "cli.h"
+#include "info.h"
+#include "json.h"
+
+/* Names in data are whatever bytes a program wrote; what is not UTF-8 becomes null. */
+static json_t *text_or_null(const char *text) {
+  json_t *value = json_string(text);
+  return value ? value : json_null();
+}
+
+static json_t *range_object(const InfoRange *range) {
+  const double ends[2] = {range->low, range->high};
+  json_t *object = json_object();
+  json_object_set_new(object, "range", cli_json_array(ends, 2));
+  json_object_set_new(object, "nonfinite", json_integer(range->nonfinite));
+  return object;
+}
+
+static json_t *array_object(const InfoArray *array) {
+  json_t *object = json_object();
+  json_object_set_new(object, "name", text_or_null(array->about.name));
+  json_object_set_new(object, "association", json_string(array->about.association == TETCAST_CELL ? "cell" : "point"));
+  json_object_set_new(object, "type", json_string(array->about.type));
+  json_object_set_new(object, "components", json_integer(array->about.components));
+  json_object_set_new(object, "active", json_boolean(array->about.active));
+  if (!array->reachable)
+    return object;
+  const InfoRange *range = array->about.components == 1 ? &array->component[0] : &array->magnitude;
+  json_object_update_new(object, range_object(range));
+  if (array->about.components > 1 && array->components > 0) {
+    json_t *list = json_array();
+    for (int i = 0; i < array->components; i++)
+      json_array_append_new(list, range_object(&array->component[i]));
+    json_object_set_new(object, "component_ranges", list);
+  }
+  return object;
+}
+
+static json_t *health_object(const TetcastMeshHealth *health) {
+  json_t *object = json_object();
+  json_object_set_new(object, "components", json_integer(health->components));
+  json_object_set_new(object, "boundary_faces", json_integer(health->boundary_faces));
+  json_object_set_new(object, "nonmanifold_faces", json_integer(health->nonmanifold_faces));
+  json_object_set_new(object, "degenerate_cells", json_integer(health->degenerate_cells));
+  json_object_set_new(object, "inverted_cells", json_integer(health->inverted_cells));
+  json_object_set_new(object, "duplicate_cells", json_integer(health->duplicate_cells));
+  json_object_set_new(object, "unused_vertices", json_integer(health->unused_vertices));
+  json_object_set_new(object, "coincident_vertices", json_integer(health->coincident_vertices));
+  json_object_set_new(object, "volume", json_real(health->volume));
+  json_object_set_new(object, "boundary_area", json_real(health->boundary_area));
+  return object;
+}
+
+void info_print_json(const Info *info) {
+  json_t *root = json_object();
+  json_object_set_new(root, "file", text_or_null(info->path));
+  json_object_set_new(root, "points", json_integer(info->vtk->dataset_point_count(info->dataset)));
+  json_object_set_new(root, "cells", json_integer(info->vtk->dataset_cell_count(info->dataset)));
+  json_t *types = json_object();
+  const char *name;
+  int64_t count;
+  for (int i = 0; info->vtk->dataset_cell_type(info->dataset, i, &name, &count); i++)
+    json_object_set_new(types, name, json_integer(count));
+  json_object_set_new(root, "cell_types", types);
+  json_object_set_new(root, "tetrahedra", json_integer(info->tetrahedra));
+  json_object_set_new(root, "vertices", json_integer(info->vertices));
+  json_object_set_new(root, "bounds", cli_json_array(info->bounds, 6));
+  json_t *arrays = json_array();
+  for (int i = 0; i < info->array_count; i++)
+    json_array_append_new(arrays, array_object(&info->arrays[i]));
+  json_object_set_new(root, "arrays", arrays);
+  json_object_set_new(root, "health", health_object(&info->health));
+  if (json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0)
+    putchar('\n');
+  else
+    cli_error("cannot write to standard output");
+  json_decref(root);
+}

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "json.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli.h"
+#include "file.h"
+
+json_t *cli_json_read(const char *path) {
+  FILE *file = fopen(path, "rb");
+  if (!file) {
+    cli_error("cannot open '%s': %s", path, strerror(errno));
+    return NULL;
+  }
+  json_error_t error;
+  errno = 0;
+  json_t *object = json_loadf(file, JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL, &error);
+  const int read_error = ferror(file) ? errno : 0;
+  fclose(file);
+  if (read_error) {
+    cli_error("cannot read '%s': %s", path, strerror(read_error));
+    json_decref(object);
+    return NULL;
+  }
+  if (!object) {
+    cli_error("%s:%d: %s", path, error.line, error.text);
+  } else if (!json_is_object(object)) {
+    cli_error("%s: expected a JSON object", path);
+    json_decref(object);
+    object = NULL;
+  }
+  return object;
+}
+
+int cli_json_numbers(const json_t *value, int most, double *values) {
+  if (json_is_number(value)) {
+    values[0] = json_number_value(value);
+    return 1;
+  }
+  if (!json_is_array(value) || json_array_size(value) > (size_t)most)
+    return 0;
+  const int count = (int)json_array_size(value);
+  for (int i = 0; i < count; i++) {
+    const json_t *item = json_array_get(value, (size_t)i);
+    if (!json_is_number(item))
+      return 0;
+    values[i] = json_number_value(item);
+  }
+  return count;
+}
+
+json_t *cli_json_array(const double *values, int count) {
+  json_t *array = json_array();
+  for (int i = 0; i < count; i++)
+    json_array_append_new(array, json_real(values[i]));
+  return array;
+}
+
+bool cli_json_write(const char *path, json_t *object) {
+  char *text = json_dumps(object, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
+  json_decref(object);
+  if (!text) {
+    cli_error("cannot write '%s': out of memory", path);
+    return false;
+  }
+  char *line = cli_print("%s\n", text);
+  const bool done = cli_file_write(path, line);
+  free(line);
+  free(text);
+  return done;
+}

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "progress.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli.h"
+
+static volatile sig_atomic_t held, caught;
+
+static void handle(int signal_number) {
+  if (held) {
+    caught = signal_number;
+    return;
+  }
+  static const char text[] = "tetcast: error: interrupted\n";
+  const ssize_t ignored = write(STDERR_FILENO, text, sizeof text - 1);
+  (void)ignored;
+  _exit(128 + signal_number);
+}
+
+void cli_interrupt_catch(void) {
+  struct sigaction action;
+  memset(&action, 0, sizeof action);
+  action.sa_handler = handle;
+  action.sa_flags = SA_RESTART;
+  const int signals[] = {SIGINT, SIGTERM, SIGHUP};
+  for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
+    struct sigaction former;
+    sigaction(signals[i], NULL, &former);
+    if (former.sa_handler != SIG_IGN) /* nohup, background jobs */
+      sigaction(signals[i], &action, NULL);
+  }
+  action.sa_handler = SIG_IGN; /* a file too large is an error of writing like any other */
+  sigaction(SIGXFSZ, &action, NULL);
+}
+
+void cli_interrupt_hold(bool hold) {
+  held = hold;
+}
+
+int cli_interrupted(void) {
+  return caught;
+}
+
+enum { BAR_WIDTH = 40 };
+
+static struct {
+  const char *label;
+  double started, drawn;
+  bool visible;
+} bar;
+
+static bool advance(void *user, double fraction) {
+  (void)user;
+  const double now = cli_seconds();
+  if (bar.label && now - bar.started > 1 && now - bar.drawn > 0.1) {
+    char cells[BAR_WIDTH + 1];
+    const int filled = (int)(BAR_WIDTH * (fraction > 1 ? 1 : fraction < 0 ? 0 : fraction));
+    memset(cells, ' ', BAR_WIDTH);
+    memset(cells, '#', (size_t)filled);
+    cells[BAR_WIDTH] = '\0';
+    fprintf(stderr, "\r%-10s [%s] %3d %%", bar.label, cells, (int)(100 * fraction));
+    bar.drawn = now;
+    bar.visible = true;
+  }
+  return caught == 0;
+}
+
+TetcastProgress cli_progress(const char *label) {
+  bar.label = !cli_quiet() && isatty(STDERR_FILENO) ? label : NULL;
+  bar.started = cli_seconds();
+  bar.drawn = 0;
+  return (TetcastProgress){.function = advance, .user = NULL};
+}
+
+void cli_progress_clear(void) {
+  if (bar.visible)
+    fputs("\r\033[K", stderr);
+  bar.visible = false;
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Long work: a progress bar, and an orderly end on Ctrl-C. */
+#ifndef TETCAST_CLI_PROGRESS_H
+#define TETCAST_CLI_PROGRESS_H
+
+#include <stdbool.h>
+
+#include <tetcast/context.h>
+
+/* Catches SIGINT, SIGTERM and SIGHUP. Until cli_interrupt_hold(true) they end the process at once; from then on they
+ * are remembered, for cli_interrupted() and the progress callback, so that temporary files are removed first. */
+void cli_interrupt_catch(void);
+void cli_interrupt_hold(bool hold);
+
+/* The signal that came while held, 0: none. */
+int cli_interrupted(void);
+
+/* A callback that draws a bar labelled `label` (static storage) on stderr if that is a terminal, the work takes longer
+ * than about a second and the command is not quiet, and that cancels the work after a signal. */
+TetcastProgress cli_progress(const char *label);
+
+/* Removes the bar; messages do so before they print. */
+void cli_progress_clear(void);
+
+#endif

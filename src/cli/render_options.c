@@ -1,0 +1,259 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "render_options.h"
+
+#include <float.h>
+#include <getopt.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <tetcast/transfer_function.h>
+
+#include "cli.h"
+#include "scene_file.h"
+#include "view.h"
+
+typedef enum OptionKind { KIND_TEXT, KIND_PATH, KIND_NUMBERS, KIND_INTEGERS, KIND_CHOICE, KIND_FLAG } OptionKind;
+
+#define BIT(id)    (UINT32_C(1) << (id))
+#define AT(member) offsetof(RenderOptions, member)
+
+/* Order of the library's enumerations. */
+static const char *const opacity_models[] = {"unit-distance", "vtk-unstructured", "ospray", NULL};
+static const char *const traversals[] = {"shell", "faces", NULL};
+static const char *const pixel_types[] = {"", "uint8", "uint16", "half", "float", "double", NULL};
+
+static const struct {
+  const char *name;
+  OptionKind kind;
+  size_t at;                /* where the value goes in RenderOptions */
+  int least, most;          /* how many numbers */
+  double low, high;         /* bounds of each */
+  const char *const *names; /* of a choice */
+  uint32_t excludes;
+  const char *form; /* what is expected */
+} table[OPTION_COUNT] = {
+    [OPTION_INPUT] = {"input", KIND_PATH, AT(input), .form = "expected a path"},
+    [OPTION_OUTPUT] = {"output", KIND_PATH, AT(output), .form = "expected a path"},
+    [OPTION_ARRAY] = {"array", KIND_TEXT, AT(array), .form = "expected NAME, NAME:component or NAME:mag"},
+    [OPTION_TRANSFER] = {"transfer", KIND_PATH, AT(transfer), .excludes = BIT(OPTION_PRESET) | BIT(OPTION_RANGE),
+                         .form = "expected a transfer function or the path of one"},
+    [OPTION_PRESET] = {"preset", KIND_TEXT, AT(preset), .excludes = BIT(OPTION_TRANSFER), .form = "expected a name"},
+    [OPTION_RANGE] = {"range", KIND_NUMBERS, AT(range), 2, 2, -DBL_MAX, DBL_MAX, .excludes = BIT(OPTION_TRANSFER),
+                      .form = "expected two numbers, LO not above HI"},
+    [OPTION_OPACITY_MODEL] = {"opacity-model", KIND_CHOICE, AT(opacity_model), .names = opacity_models,
+                              .form = "expected unit-distance, vtk-unstructured or ospray"},
+    [OPTION_EYE] = {"eye", KIND_NUMBERS, AT(eye), 3, 3, -DBL_MAX, DBL_MAX, .form = "expected three numbers x,y,z"},
+    [OPTION_TARGET] = {"target", KIND_NUMBERS, AT(target), 3, 3, -DBL_MAX, DBL_MAX,
+                       .form = "expected three numbers x,y,z"},
+    [OPTION_UP] = {"up", KIND_NUMBERS, AT(up), 3, 3, -DBL_MAX, DBL_MAX,
+                   .form = "expected three numbers x,y,z, not all zero"},
+    [OPTION_FOVY] = {"fovy", KIND_NUMBERS, AT(fovy), 1, 1, 1e-6, 179.999999, .excludes = BIT(OPTION_ORTHO),
+                     .form = "expected an angle between 0 and 180 degrees"},
+    [OPTION_ORTHO] = {"ortho", KIND_NUMBERS, AT(ortho), 1, 1, DBL_MIN, DBL_MAX, .excludes = BIT(OPTION_FOVY),
+                      .form = "expected a height above 0"},
+    [OPTION_SIZE] = {"size", KIND_INTEGERS, AT(size), 2, 2, 1, 1 << 20,
+                     .form = "expected WxH: whole numbers from 1 to 1048576, no more than 2^30 pixels"},
+    [OPTION_SAMPLES] = {"samples", KIND_INTEGERS, AT(samples), 1, 1, 1, 65536,
+                        .form = "expected a whole number from 1 to 65536"},
+    [OPTION_BACKGROUND] = {"background", KIND_NUMBERS, AT(background), 3, 4, 0, 1,
+                           .form = "expected r,g,b or r,g,b,a from 0 to 1"},
+    [OPTION_TRAVERSAL] = {"traversal", KIND_CHOICE, AT(traversal), .names = traversals,
+                          .form = "expected shell or faces"},
+    [OPTION_THREADS] = {"threads", KIND_INTEGERS, AT(threads), 1, 1, 0, 4096,
+                        .form = "expected a whole number from 0 (all) to 4096"},
+    [OPTION_REPEAT] = {"repeat", KIND_INTEGERS, AT(repeat), 1, 1, 1, 1e6,
+                       .form = "expected a whole number from 1 to 1000000"},
+    [OPTION_PIXEL_TYPE] = {"pixel-type", KIND_CHOICE, AT(pixel_type), .names = pixel_types,
+                           .form = "expected uint8, uint16, half, float or double"},
+    [OPTION_STATS] = {"stats", KIND_PATH, AT(stats), .form = "expected a path"},
+    [OPTION_SCENE] = {"scene", KIND_PATH, AT(scene), .form = "expected a path"},
+    [OPTION_SAVE_SCENE] = {"save-scene", KIND_PATH, AT(save_scene), .form = "expected a path"},
+    [OPTION_QUIET] = {"quiet", KIND_FLAG, AT(quiet), .low = 0, .high = 1, .form = "expected true or false"},
+};
+
+RenderOptions render_options_default(void) {
+  return (RenderOptions){.size = {1024, 768}, .samples = 1, .background = {1, 1, 1, 1}, .repeat = 1};
+}
+
+void render_options_release(RenderOptions *options) {
+  for (int id = 0; id < OPTION_COUNT; id++)
+    if (table[id].kind == KIND_TEXT || table[id].kind == KIND_PATH)
+      free(*(char **)((char *)options + table[id].at));
+  json_decref(options->transfer_object);
+}
+
+OptionId render_option_find(const char *key) {
+  for (int id = 0; id < OPTION_COUNT; id++) {
+    const char *a = table[id].name, *b = key;
+    while (*a && (*a == *b || (*a == '-' && *b == '_'))) {
+      a++;
+      b++;
+    }
+    if (!*a && !*b)
+      return (OptionId)id;
+  }
+  return OPTION_COUNT;
+}
+
+bool render_option_is_path(OptionId id) {
+  return table[id].kind == KIND_PATH;
+}
+
+const char *render_option_choice(OptionId id, int value) {
+  return table[id].names[value];
+}
+
+const char *render_options_claim(RenderOptions *options, OptionId id) {
+  for (int other = 0; other < OPTION_COUNT; other++)
+    if (options->source & table[id].excludes & BIT(other))
+      return table[other].name;
+  options->given = (options->given & ~table[id].excludes) | BIT(id);
+  options->source |= BIT(id);
+  return NULL;
+}
+
+static const char *set_preset_name(const char *name) {
+  static char reason[512];
+  size_t length = (size_t)snprintf(reason, sizeof reason, "there is no such preset; there are");
+  for (int i = 0; tetcast_preset_name(i); i++) {
+    if (!strcmp(name, tetcast_preset_name(i)))
+      return NULL;
+    if (length < sizeof reason)
+      length += (size_t)snprintf(reason + length, sizeof reason - length, " %s", tetcast_preset_name(i));
+  }
+  return reason;
+}
+
+static const char *set_numbers(OptionId id, void *at, const OptionValue *value) {
+  const double *numbers = value->numbers;
+  if (value->text || value->count < table[id].least || value->count > table[id].most)
+    return table[id].form;
+  for (int i = 0; i < value->count; i++)
+    if (!(numbers[i] >= table[id].low && numbers[i] <= table[id].high) ||
+        (table[id].kind == KIND_INTEGERS && numbers[i] != floor(numbers[i])))
+      return table[id].form;
+  if ((id == OPTION_SIZE && numbers[0] * numbers[1] > 0x1p30) || (id == OPTION_RANGE && numbers[0] > numbers[1]) ||
+      (id == OPTION_UP && numbers[0] == 0 && numbers[1] == 0 && numbers[2] == 0))
+    return table[id].form;
+  memcpy(at, numbers, sizeof(double) * (size_t)value->count);
+  if (id == OPTION_BACKGROUND && value->count == 3)
+    ((double *)at)[3] = 1;
+  return NULL;
+}
+
+static const char *set_choice(OptionId id, void *at, const OptionValue *value) {
+  for (int i = 0; value->text && *value->text && table[id].names[i]; i++) {
+    if (!strcmp(value->text, table[id].names[i])) {
+      memcpy(at, &i, sizeof i);
+      return NULL;
+    }
+  }
+  return table[id].form;
+}
+
+const char *render_options_set(RenderOptions *options, OptionId id, const OptionValue *value) {
+  void *at = (char *)options + table[id].at;
+  switch (table[id].kind) {
+  case KIND_NUMBERS:
+  case KIND_INTEGERS:
+    return set_numbers(id, at, value);
+  case KIND_CHOICE:
+    return set_choice(id, at, value);
+  case KIND_FLAG:
+    options->quiet = value->count == 1 && value->numbers[0] != 0;
+    return NULL;
+  default:
+    if (!value->text || !*value->text)
+      return table[id].form;
+    const char *reason = id == OPTION_PRESET ? set_preset_name(value->text) : NULL;
+    if (!reason) {
+      char **text = at;
+      free(*text);
+      *text = cli_duplicate(value->text);
+      if (id == OPTION_TRANSFER) {
+        json_decref(options->transfer_object);
+        options->transfer_object = NULL;
+      }
+    }
+    return reason;
+  }
+}
+
+static int set_from_text(RenderOptions *options, OptionId id, const char *text) {
+  OptionValue value = {.text = text};
+  if (table[id].kind == KIND_NUMBERS || table[id].kind == KIND_INTEGERS) {
+    value.count = cli_parse_numbers(text, id == OPTION_SIZE ? 'x' : ',', table[id].most, value.numbers);
+    value.text = NULL;
+  } else if (table[id].kind == KIND_FLAG) {
+    value.count = 1;
+    value.numbers[0] = 1;
+  }
+  const char *other = render_options_claim(options, id);
+  if (other)
+    return cli_usage_error("render", "--%s and --%s exclude each other", table[id].name, other);
+  const char *reason = render_options_set(options, id, &value);
+  return reason ? cli_usage_error("render", "--%s %s: %s", table[id].name, text, reason) : -1;
+}
+
+/* The words of the command line; with `scene_only` everything but the options --scene and --help is left for later. */
+static int parse_words(RenderOptions *options, int argc, char **argv, bool scene_only) {
+  enum { HELP = 'h', OUTPUT = 'o', LONG = 256 };
+  struct option words[OPTION_COUNT + 2];
+  int count = 0;
+  for (int id = 0; id < OPTION_COUNT; id++)
+    if (id != OPTION_INPUT)
+      words[count++] = (struct option){table[id].name, table[id].kind == KIND_FLAG ? no_argument : required_argument,
+                                       NULL, LONG + id};
+  words[count++] = (struct option){"help", no_argument, NULL, HELP};
+  words[count] = (struct option){NULL, 0, NULL, 0};
+
+  optind = 0; /* getopt starts anew */
+  int code;
+  while ((code = getopt_long(argc, argv, ":ho:", words, NULL)) != -1) {
+    if (code == '?' || code == ':')
+      return cli_bad_option("render", code, argv);
+    if (code == HELP) {
+      fputs(render_help, stdout);
+      return cli_finish_output();
+    }
+    const OptionId id = code == OUTPUT ? OPTION_OUTPUT : (OptionId)(code - LONG);
+    if (scene_only != (id == OPTION_SCENE))
+      continue;
+    const int result = set_from_text(options, id, optarg);
+    if (result >= 0)
+      return result;
+  }
+  if (scene_only)
+    return -1;
+  for (int i = optind; i < argc; i++) {
+    if (i > optind)
+      return cli_usage_error("render", "more than one input: '%s' and '%s'", argv[optind], argv[i]);
+    const int result = set_from_text(options, OPTION_INPUT, argv[i]);
+    if (result >= 0)
+      return result;
+  }
+  return -1;
+}
+
+int render_options_parse(RenderOptions *options, int argc, char **argv) {
+  int result = parse_words(options, argc, argv, true);
+  if (result < 0 && options->scene) {
+    options->source = 0;
+    if (!scene_file_read(options))
+      return CLI_FAILED;
+  }
+  options->source = 0;
+  if (result < 0)
+    result = parse_words(options, argc, argv, false);
+  if (result < 0 && !options->input)
+    return cli_usage_error("render", "no input given");
+  const char *fault = result < 0 ? view_fault(options) : NULL;
+  if (fault && options->scene) {
+    cli_error("%s", fault);
+    return CLI_FAILED;
+  }
+  return fault ? cli_usage_error("render", "%s", fault) : result;
+}

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What a picture is made of, from the command line and from a scene file: one table, one check of values for both. */
+#ifndef TETCAST_CLI_RENDER_OPTIONS_H
+#define TETCAST_CLI_RENDER_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <jansson.h>
+
+typedef enum OptionId {
+  OPTION_INPUT,
+  OPTION_OUTPUT,
+  OPTION_ARRAY,
+  OPTION_TRANSFER,
+  OPTION_PRESET,
+  OPTION_RANGE,
+  OPTION_OPACITY_MODEL,
+  OPTION_EYE,
+  OPTION_TARGET,
+  OPTION_UP,
+  OPTION_FOVY,
+  OPTION_ORTHO,
+  OPTION_SIZE,
+  OPTION_SAMPLES,
+  OPTION_BACKGROUND,
+  OPTION_TRAVERSAL,
+  OPTION_THREADS,
+  OPTION_REPEAT,
+  OPTION_PIXEL_TYPE,
+  OPTION_STATS,
+  OPTION_SCENE,
+  OPTION_SAVE_SCENE,
+  OPTION_QUIET,
+  OPTION_COUNT
+} OptionId;
+
+typedef struct RenderOptions {
+  char *input, *output, *array, *transfer, *preset, *stats, *scene, *save_scene; /* NULL unless given */
+  json_t *transfer_object; /* of a scene file; instead of transfer */
+  double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], threads, repeat;
+  int opacity_model, traversal, pixel_type; /* values of the library's enumerations */
+  int quiet;
+  uint32_t given;  /* bit 1 << OptionId: has a value from command line or scene file */
+  uint32_t source; /* the same for the source being read alone */
+} RenderOptions;
+
+/* A value as both sources can state it. */
+typedef struct OptionValue {
+  const char *text; /* NULL: numbers */
+  int count;
+  double numbers[4];
+} OptionValue;
+
+RenderOptions render_options_default(void);
+void render_options_release(RenderOptions *options);
+
+static inline bool render_options_given(const RenderOptions *options, OptionId id) {
+  return options->given >> id & 1;
+}
+
+/* The option of a key, e.g. "pixel_type" or "pixel-type"; OPTION_COUNT: none. */
+OptionId render_option_find(const char *key);
+bool render_option_is_path(OptionId id);
+
+/* The name of a choice's value. */
+const char *render_option_choice(OptionId id, int value);
+
+/* Sets an option. NULL, or why the value can't be (static storage or inside the options). */
+const char *render_options_set(RenderOptions *options, OptionId id, const OptionValue *value);
+
+/* Notes that the current source gives an option, and takes back what excludes it of another source. NULL, or the name
+ * of an option of the same source that excludes it. */
+const char *render_options_claim(RenderOptions *options, OptionId id);
+
+/* Reads the command line and the scene file it names. -1 to go on, else the exit code. */
+int render_options_parse(RenderOptions *options, int argc, char **argv);
+
+extern const char render_help[];
+
+#endif

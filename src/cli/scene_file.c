@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "scene_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli.h"
+#include "file.h"
+#include "json.h"
+
+static bool set_value(RenderOptions *options, OptionId id, const char *key, const json_t *json) {
+  OptionValue value = {.text = json_string_value(json)};
+  char *path = NULL;
+  if (value.text && *value.text && render_option_is_path(id)) {
+    char *folder = cli_path_folder(options->scene);
+    value.text = path = cli_path_join(folder, value.text);
+    free(folder);
+  } else if (json_is_boolean(json) && id == OPTION_QUIET) {
+    value.count = 1;
+    value.numbers[0] = json_is_true(json);
+  } else if (!value.text) {
+    value.count = cli_json_numbers(json, 4, value.numbers);
+  }
+
+  const char *reason = NULL;
+  if (id == OPTION_QUIET && !json_is_boolean(json)) {
+    reason = "expected true or false";
+  } else if (id == OPTION_TRANSFER && json_is_object(json)) {
+    json_decref(options->transfer_object);
+    options->transfer_object = json_deep_copy(json);
+  } else {
+    reason = render_options_set(options, id, &value);
+  }
+  if (reason)
+    cli_error("%s: %s: %s", options->scene, key, reason);
+  free(path);
+  return !reason;
+}
+
+static bool set_key(RenderOptions *options, bool in_camera, const char *key, const json_t *json) {
+  char *name = cli_print("%s%s", in_camera ? "camera." : "", key);
+  const OptionId id = render_option_find(key);
+  const bool of_camera = id >= OPTION_EYE && id <= OPTION_ORTHO;
+  bool done = false;
+  if (id == OPTION_COUNT || id == OPTION_SCENE || id == OPTION_SAVE_SCENE || of_camera != in_camera) {
+    cli_error("%s: unknown key '%s'", options->scene, name);
+  } else if (options->source >> id & 1) {
+    cli_error("%s: key '%s' appears twice", options->scene, name);
+  } else {
+    const char *other = render_options_claim(options, id);
+    if (other)
+      cli_error("%s: '%s' and '%s' exclude each other", options->scene, key, other);
+    done = !other && set_value(options, id, name, json);
+  }
+  free(name);
+  return done;
+}
+
+static bool set_camera(RenderOptions *options, json_t *camera) {
+  if (!json_is_object(camera)) {
+    cli_error("%s: camera: expected an object", options->scene);
+    return false;
+  }
+  const char *key;
+  json_t *value;
+  json_object_foreach(camera, key, value) if (!set_key(options, true, key, value)) return false;
+  return true;
+}
+
+bool scene_file_read(RenderOptions *options) {
+  json_t *root = cli_json_read(options->scene);
+  if (!root)
+    return false;
+  bool done = true;
+  const char *key;
+  json_t *value;
+  json_object_foreach(root, key, value) {
+    done = strcmp(key, "camera") ? set_key(options, false, key, value) : set_camera(options, value);
+    if (!done)
+      break;
+  }
+  json_decref(root);
+  return done;
+}
+
+static json_t *knots(const double *values, int64_t count, int width) {
+  json_t *array = json_array();
+  for (int64_t i = 0; i < count; i++)
+    json_array_append_new(array, cli_json_array(values + i * width, width));
+  return array;
+}
+
+static json_t *transfer_object(const TetcastTransferFunction *transfer_function) {
+  int64_t count;
+  json_t *object = json_object();
+  const double *color = tetcast_transfer_function_color(transfer_function, &count);
+  json_object_set_new(object, "color", knots(color, count, 4));
+  const double *extinction = tetcast_transfer_function_extinction(transfer_function, &count);
+  json_object_set_new(object, "extinction", knots(extinction, count, 2));
+  return object;
+}
+
+static json_t *camera_object(const TetcastCamera *camera) {
+  json_t *object = json_object();
+  json_object_set_new(object, "eye", cli_json_array(camera->eye, 3));
+  json_object_set_new(object, "target", cli_json_array(camera->target, 3));
+  json_object_set_new(object, "up", cli_json_array(camera->up, 3));
+  if (camera->projection == TETCAST_PERSPECTIVE)
+    json_object_set_new(object, "fovy", json_real(camera->fovy));
+  else
+    json_object_set_new(object, "ortho", json_real(camera->height));
+  return object;
+}
+
+static json_t *size_array(const double size[2]) {
+  json_t *array = json_array();
+  json_array_append_new(array, json_integer((json_int_t)size[0]));
+  json_array_append_new(array, json_integer((json_int_t)size[1]));
+  return array;
+}
+
+bool scene_file_write(const RenderOptions *options, const char *array, const TetcastCamera *camera,
+                      const TetcastTransferFunction *transfer_function) {
+  char *folder = cli_path_folder(options->save_scene);
+  char *input = cli_path_relative(folder, options->input);
+  free(folder);
+  json_t *scene = json_object();
+  /* Names come from the file system and the data, and JSON takes UTF-8 only. */
+  int failed = json_object_set_new(scene, "input", json_string(input));
+  failed |= json_object_set_new(scene, "output", json_string(cli_path_name(options->output)));
+  failed |= json_object_set_new(scene, "array", json_string(array));
+  free(input);
+  if (failed) {
+    cli_error("cannot write '%s': the name of the input, the output or the array is not UTF-8", options->save_scene);
+    json_decref(scene);
+    return false;
+  }
+  json_object_set_new(scene, "transfer", transfer_object(transfer_function));
+  json_object_set_new(scene, "camera", camera_object(camera));
+  json_object_set_new(scene, "size", size_array(options->size));
+  json_object_set_new(scene, "samples", json_integer((json_int_t)options->samples));
+  json_object_set_new(scene, "background", cli_json_array(options->background, 4));
+  json_object_set_new(scene, "traversal", json_string(render_option_choice(OPTION_TRAVERSAL, options->traversal)));
+  if (options->pixel_type)
+    json_object_set_new(scene, "pixel_type", json_string(render_option_choice(OPTION_PIXEL_TYPE, options->pixel_type)));
+  return cli_json_write(options->save_scene, scene);
+}

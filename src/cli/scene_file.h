@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#ifndef TETCAST_CLI_SCENE_FILE_H
+#define TETCAST_CLI_SCENE_FILE_H
+
+#include <stdbool.h>
+
+#include <tetcast/camera.h>
+#include <tetcast/transfer_function.h>
+
+#include "render_options.h"
+
+/* Sets what the file options->scene states. False after a message. */
+bool scene_file_read(RenderOptions *options);
+
+/* Writes options->save_scene: everything that makes the picture again, bit for bit. False after a message. */
+bool scene_file_write(const RenderOptions *options, const char *array, const TetcastCamera *camera,
+                      const TetcastTransferFunction *transfer_function);
+
+#endif

@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "transfer_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli.h"
+#include "json.h"
+
+/* The rows of `width` numbers under a key, for free(); NULL after a message. */
+static double *load_knots(const char *place, const char *key, const json_t *rows, int width, const char *form,
+                          int64_t *count) {
+  if (!json_is_array(rows) || json_array_size(rows) == 0) {
+    cli_error("%s: %s: expected a list of knots %s", place, key, form);
+    return NULL;
+  }
+  *count = (int64_t)json_array_size(rows);
+  double *knots = cli_allocate(sizeof(double) * (size_t)*count * (size_t)width);
+  for (int64_t i = 0; i < *count; i++) {
+    const json_t *row = json_array_get(rows, (size_t)i);
+    if (!json_is_array(row) || cli_json_numbers(row, width, knots + i * width) != width) {
+      cli_error("%s: %s[%lld]: expected %s", place, key, (long long)i, form);
+      free(knots);
+      return NULL;
+    }
+  }
+  return knots;
+}
+
+static bool check_keys(const char *place, const json_t *root) {
+  static const char *const known[] = {"color", "extinction", "opacity", "unit_distance"};
+  void *position = json_object_iter((json_t *)root);
+  for (; position; position = json_object_iter_next((json_t *)root, position)) {
+    const char *key = json_object_iter_key(position);
+    size_t i = 0;
+    while (i < sizeof known / sizeof *known && strcmp(key, known[i]))
+      i++;
+    if (i == sizeof known / sizeof *known) {
+      cli_error("%s: unknown key '%s'", place, key);
+      return false;
+    }
+  }
+  const bool extinction = json_object_get(root, "extinction"), opacity = json_object_get(root, "opacity");
+  if (!json_object_get(root, "color") || extinction == opacity) {
+    cli_error("%s: expected \"color\" and either \"extinction\" or \"opacity\"", place);
+    return false;
+  }
+  if (extinction && json_object_get(root, "unit_distance")) {
+    cli_error("%s: unit_distance: belongs to \"opacity\", not to \"extinction\"", place);
+    return false;
+  }
+  return true;
+}
+
+static TetcastTransferFunction *create(TetcastContext *context, const char *place, const json_t *root,
+                                       const RenderOptions *options) {
+  if (!check_keys(place, root))
+    return NULL;
+  TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
+  desc.opacity_model = (TetcastOpacityModel)options->opacity_model;
+  const json_t *unit_distance = json_object_get(root, "unit_distance");
+  if (unit_distance && !json_is_number(unit_distance)) {
+    cli_error("%s: unit_distance: expected a number", place);
+    return NULL;
+  }
+  if (unit_distance)
+    desc.unit_distance = json_number_value(unit_distance);
+
+  TetcastTransferFunction *result = NULL;
+  const bool is_opacity = json_object_get(root, "opacity");
+  const char *key = is_opacity ? "opacity" : "extinction";
+  int64_t count;
+  double *color =
+      load_knots(place, "color", json_object_get(root, "color"), 4, "[value, red, green, blue]", &desc.color_count);
+  double *second = color ? load_knots(place, key, json_object_get(root, key), 2,
+                                      is_opacity ? "[value, opacity]" : "[value, extinction]", &count)
+                         : NULL;
+  if (second) {
+    desc.color = color;
+    if (is_opacity) {
+      desc.opacity = second;
+      desc.opacity_count = count;
+    } else {
+      desc.extinction = second;
+      desc.extinction_count = count;
+      if (render_options_given(options, OPTION_OPACITY_MODEL))
+        cli_warning("%s states extinction: --opacity-model has no effect", place);
+    }
+    cli_set_place(place);
+    const TetcastStatus status = tetcast_transfer_function_create(context, &desc, &result);
+    if (status != TETCAST_OK)
+      cli_failed(status);
+    cli_set_place(NULL);
+  }
+  free(color);
+  free(second);
+  return result;
+}
+
+TetcastTransferFunction *transfer_file_load(TetcastContext *context, const RenderOptions *options) {
+  if (options->transfer_object) {
+    char *place = cli_print("%s: transfer", options->scene);
+    TetcastTransferFunction *result = create(context, place, options->transfer_object, options);
+    free(place);
+    return result;
+  }
+  json_t *root = cli_json_read(options->transfer);
+  TetcastTransferFunction *result = root ? create(context, options->transfer, root, options) : NULL;
+  json_decref(root);
+  return result;
+}

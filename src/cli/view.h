@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#ifndef TETCAST_CLI_VIEW_H
+#define TETCAST_CLI_VIEW_H
+
+#include <tetcast/camera.h>
+
+#include "render_options.h"
+
+/* What is wrong with a camera that is wholly given, NULL: nothing. */
+const char *view_fault(const RenderOptions *options);
+
+/* The camera of the options, what they leave open completed so that all within `bounds` is seen. False after a message.
+ */
+bool view_complete(const RenderOptions *options, const double bounds[6], TetcastCamera *camera);
+
+#endif

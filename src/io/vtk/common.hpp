@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the files of this adapter share: errors, VTK's complaints, telling formats apart, checking what VTK hands out.
+#ifndef TETCAST_VTK_COMMON_HPP
+#define TETCAST_VTK_COMMON_HPP
+
+#include <cstdint>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <tetcast/array.h>
+#include <tetcast/context.h>
+#include <tetcast/status.h>
+
+class vtkCellArray;
+class vtkDataArray;
+class vtkPoints;
+
+namespace tcv {
+
+// What the inside throws and the fence at the C interface turns into a status and a message.
+struct Failure {
+  TetcastStatus status;
+  std::string text;
+};
+
+[[noreturn]] void fail(TetcastStatus status, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+// Runs `body`; no exception leaves it. `path` names the file in messages that come from no Failure.
+template <typename Body> TetcastStatus fence(TetcastContext *context, const char *path, Body &&body) noexcept {
+  try {
+    body();
+    return TETCAST_OK;
+  } catch (const Failure &failure) {
+    return tetcast_context_error(context, failure.status, "%s", failure.text.c_str());
+  } catch (const std::bad_alloc &) {
+    return tetcast_context_error(context, TETCAST_ERROR_MEMORY, "%s: not enough memory for what it holds or claims to hold", path);
+  } catch (const std::exception &exception) {
+    return tetcast_context_error(context, TETCAST_ERROR_DATA, "%s: %s", path, exception.what());
+  } catch (...) {
+    return tetcast_context_error(context, TETCAST_ERROR_DATA, "%s: unknown exception", path);
+  }
+}
+
+// While one lives, what VTK says on this thread comes here and is printed nowhere. One a thread at a time.
+class Capture {
+public:
+  Capture();
+  ~Capture();
+  Capture(const Capture &) = delete;
+  Capture &operator=(const Capture &) = delete;
+
+  bool failed() const { return failed_; }
+  const std::string &error() const { return error_; }     // the first; empty if there was none
+  const std::string &warning() const { return warning_; } // the first; empty if there was none
+  void add(const char *text, bool is_error) noexcept;
+
+private:
+  bool failed_ = false;
+  std::string error_, warning_;
+};
+
+// Fails unless `path` is a readable, non-empty regular file. Returns its first bytes (64 KiB at most).
+std::string file_head(const char *path);
+std::string file_contents(const char *path);
+int64_t file_size(const char *path); // 0 if there is no such file
+
+// What the content says the file is: "VTKFile UnstructuredGrid", "vtk POLYDATA", "PLY", "OFF", "STL", "HDF5", "NetCDF", "" …
+std::string file_kind(const std::string &head);
+bool has_extension(const char *path, const char *extension); // ".vtu", in any case of letters
+
+// Refuses a kind of content that no reader of this call takes.
+[[noreturn]] void refuse(const char *path, const std::string &kind, const char *wanted, const char *extensions);
+
+// Each fails with the first offence and its place.
+void check_points(const char *path, vtkPoints *points);
+void check_cells(const char *path, vtkCellArray *cells, int64_t point_count, const char *what);
+
+TetcastType type_of(const vtkDataArray *array);    // NONE for types TetcastType lacks
+const char *type_name(const vtkDataArray *array);  // "float64", "int8" …; static storage
+TetcastArray view_of(vtkDataArray *array);         // type must not be NONE
+int64_t type_size(TetcastType type);
+
+} // namespace tcv
+
+#endif

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef TETCAST_VTK_DATASET_HPP
+#define TETCAST_VTK_DATASET_HPP
+
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <vtkDataArray.h>
+#include <vtkSmartPointer.h>
+
+#include <tetcast/dataset.h>
+
+#include "cells.hpp"
+
+namespace tcv {
+
+struct Array {
+  std::string name;
+  TetcastAssociation association;
+  vtkSmartPointer<vtkDataArray> data;
+  bool active;
+  bool number; // identifies points or cells: shown on request only
+};
+
+} // namespace tcv
+
+// VTK's arrays are kept, its grid is not.
+struct TetcastDataset {
+  TetcastContext *context = nullptr;
+  std::string path;
+  int64_t point_count = 0, cell_count = 0;
+  vtkSmartPointer<vtkDataArray> points; // float32 or float64
+  tcv::Tetrahedra tetrahedra;
+  std::vector<tcv::Array> arrays; // point arrays first
+  mutable std::mutex mutex;       // guards the next
+  mutable std::set<std::string> selectors; // that were handed out
+};
+
+#endif

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common.hpp"
+#include "files.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include <vtkIdTypeArray.h>
+#include <vtkInputStream.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkXMLDataElement.h>
+#include <vtkXMLDataParser.h>
+#include <vtkXMLPUnstructuredGridReader.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+namespace {
+
+// Looks at binary data before VTK does, which divides by sizes that may be zero, writes blocks that are larger than they
+// should be where they don't fit, and is content with the start of data that end early.
+class Parser : public vtkXMLDataParser {
+public:
+  static Parser *New() { VTK_STANDARD_NEW_BODY(Parser); }
+
+  // Whether the values that `element` describes make at least `bytes` bytes.
+  bool holds(vtkXMLDataElement *element, uint64_t bytes, uint64_t file_size) {
+    const char *format = element->GetAttribute("format");
+    if (element->GetAttribute("offset")) {
+      vtkTypeInt64 offset = 0;
+      element->GetScalarAttribute("offset", offset);
+      this->DataStream = this->AppendedDataStream;
+      this->Stream->clear();
+      this->SeekG(this->AppendedDataPosition + offset);
+    } else if (format && std::strcmp(format, "binary") == 0) {
+      this->DataStream = this->InlineDataStream;
+      this->SeekInlineDataPosition(element);
+    } else {
+      return true; // text, which VTK reads with care
+    }
+    this->DataStream->SetStream(this->Stream);
+    this->DataStream->StartReading();
+    const bool good = this->Compressor ? blocks_hold(bytes, file_size) : plain_holds(bytes, file_size);
+    this->DataStream->EndReading();
+    this->Stream->clear();
+    return good;
+  }
+
+private:
+  bool read_header(uint64_t *values, size_t count) {
+    const size_t word = this->HeaderType == 64 ? 8 : 4;
+    unsigned char bytes[3 * 8];
+    if (this->DataStream->Read(bytes, count * word) < count * word) return false;
+    this->PerformByteSwap(bytes, count, word);
+    for (size_t i = 0; i < count; ++i) {
+      uint32_t narrow;
+      std::memcpy(&narrow, bytes + i * word, sizeof narrow);
+      values[i] = narrow;
+      if (word == 8) std::memcpy(&values[i], bytes + i * word, sizeof values[i]);
+    }
+    return true;
+  }
+
+  // Number of blocks, size of each, size of a smaller last one (0: there is none).
+  bool blocks_hold(uint64_t bytes, uint64_t file_size) {
+    uint64_t header[3];
+    if (!read_header(header, 3)) return false;
+    const auto [count, size, last] = header;
+    if (count == 0) return bytes == 0;
+    if (count > file_size || size == 0 || size > UINT64_MAX / count || last > size) return false;
+    return (last ? (count - 1) * size + last : count * size) >= bytes;
+  }
+
+  bool plain_holds(uint64_t bytes, uint64_t file_size) {
+    uint64_t size;
+    if (!read_header(&size, 1) || size < bytes) return false;
+    if (!this->DataStream->IsA("vtkBase64InputStream")) {
+      const vtkTypeInt64 at = this->TellG();
+      return at >= 0 && static_cast<uint64_t>(at) <= file_size && bytes <= file_size - static_cast<uint64_t>(at);
+    }
+    std::vector<unsigned char> buffer(std::min<uint64_t>(bytes, 65536)); // a letter that is none ends the data
+    while (bytes > 0) {
+      const size_t part = std::min<uint64_t>(bytes, buffer.size());
+      if (this->DataStream->Read(buffer.data(), part) < part) return false;
+      bytes -= part;
+    }
+    return true;
+  }
+};
+
+// VTK allocates and clears what a header claims before it looks for the data, and takes negative counts as they are.
+template <typename Base> class Checked : public Base {
+public:
+  static Checked *New() { VTK_STANDARD_NEW_BODY(Checked); }
+
+protected:
+  void CreateXMLParser() override {
+    if (this->XMLParser) this->DestroyXMLParser();
+    this->XMLParser = Parser::New();
+  }
+
+  int ReadVTKFile(vtkXMLDataElement *element) override {
+    const int result = Base::ReadVTKFile(element);
+    this->FieldDataElement = nullptr; // notes on the whole file: not wanted, and VTK crashes on those of unknown type
+    return result;
+  }
+
+  int ReadPiece(vtkXMLDataElement *element) override {
+    if (!Base::ReadPiece(element)) return 0;
+    const vtkIdType points = this->GetNumberOfPointsInPiece(this->Piece), cells = this->GetNumberOfCellsInPiece(this->Piece);
+    const int64_t limit = 256 * tcv::file_size(this->GetFileName()); // compressed, the best mesh stays far below
+    if (points >= 0 && cells >= 0 && points <= limit && cells <= limit) return 1;
+    vtkErrorMacro("piece " << this->Piece << " claims " << points << " points and " << cells
+                           << " cells, which the file can't hold");
+    return 0;
+  }
+
+  int ReadArrayValues(vtkXMLDataElement *element, vtkIdType index, vtkAbstractArray *array, vtkIdType start, vtkIdType count,
+                      vtkXMLReader::FieldType type) override {
+    uint64_t bits = 0; // of a value; strings have any length
+    if (array->GetDataType() == VTK_BIT) bits = 1;
+    else if (array->GetDataType() != VTK_STRING) bits = 8 * static_cast<uint64_t>(array->GetDataTypeSize());
+    const uint64_t bytes = (bits * static_cast<uint64_t>(std::max<vtkIdType>(start + count, 0)) + 7) / 8;
+    const auto file_size = static_cast<uint64_t>(tcv::file_size(this->GetFileName()));
+    if (!static_cast<Parser *>(this->XMLParser)->holds(element, bytes, file_size)) {
+      const char *name = element->GetAttribute("Name");
+      vtkErrorMacro("array '" << (name ? name : "") << "' has less data than it should, or damaged ones");
+      return 0;
+    }
+    return Base::ReadArrayValues(element, index, array, start, count, type);
+  }
+};
+
+class GridReader : public Checked<vtkXMLUnstructuredGridReader> {
+public:
+  static GridReader *New() { VTK_STANDARD_NEW_BODY(GridReader); }
+
+protected:
+  int ReadPieceData() override { return faces_fit() ? vtkXMLUnstructuredGridReader::ReadPieceData() : 0; }
+
+private:
+  using Numbers = vtkSmartPointer<vtkIdTypeArray>;
+
+  Numbers numbers(vtkXMLDataElement *element, int64_t count) {
+    const auto values = vtkSmartPointer<vtkAbstractArray>::Take(this->CreateArray(element));
+    vtkDataArray *array = vtkDataArray::SafeDownCast(values);
+    if (!array || array->GetNumberOfComponents() != 1) return nullptr;
+    array->SetNumberOfTuples(count);
+    if (!this->ReadArrayValues(element, 0, array, 0, count, CELL_DATA)) return nullptr;
+    const auto result = Numbers::New();
+    result->DeepCopy(array);
+    return result;
+  }
+
+  // VTK walks the faces of polyhedra, and writes to them, without looking where they end.
+  bool faces_fit() {
+    vtkXMLDataElement *cells = this->CellElements[this->Piece];
+    const int64_t count = this->NumberOfCells[this->Piece];
+    vtkXMLDataElement *of_faces = this->FindDataArrayWithName(cells, "faces");
+    vtkXMLDataElement *of_ends = this->FindDataArrayWithName(cells, "faceoffsets");
+    if (!of_faces || !of_ends || count == 0) return true; // what is missing is noticed by VTK
+    const Numbers ends = numbers(of_ends, count);
+    int64_t size = 0; // as VTK takes it: the last end there is
+    for (int64_t i = 0; ends && i < count; ++i) size = ends->GetValue(i) > -1 ? ends->GetValue(i) : size;
+    const Numbers faces = ends ? numbers(of_faces, size) : nullptr;
+    int64_t at = 0;
+    for (int64_t i = 0; faces && i < count; ++i) {
+      if (ends->GetValue(i) < 0) continue;
+      const int64_t cell_faces = at < size ? faces->GetValue(at++) : -1;
+      if (cell_faces < 0) at = -1;
+      for (int64_t face = 0; at >= 0 && face < cell_faces; ++face) {
+        const int64_t corners = at < size ? faces->GetValue(at++) : -1;
+        at = corners < 0 || corners > size - at ? -1 : at + corners;
+      }
+      if (at < 0) break;
+    }
+    if (faces && at == size) return true;
+    vtkErrorMacro("the faces of the polyhedra in piece " << this->Piece << " don't match their offsets");
+    return false;
+  }
+};
+
+class PiecesReader : public vtkXMLPUnstructuredGridReader {
+public:
+  static PiecesReader *New() { VTK_STANDARD_NEW_BODY(PiecesReader); }
+
+protected:
+  vtkXMLDataReader *CreatePieceReader() override { return GridReader::New(); }
+};
+
+template <typename Reader> auto read(const char *path) {
+  vtkNew<Reader> reader;
+  reader->SetFileName(path);
+  reader->Update();
+  return vtkSmartPointer<std::remove_pointer_t<decltype(reader->GetOutput())>>(reader->GetOutput());
+}
+
+} // namespace
+
+namespace tcv {
+
+vtkSmartPointer<vtkUnstructuredGrid> read_vtu(const char *path) { return read<GridReader>(path); }
+vtkSmartPointer<vtkUnstructuredGrid> read_pvtu(const char *path) { return read<PiecesReader>(path); }
+vtkSmartPointer<vtkPolyData> read_vtp(const char *path) { return read<Checked<vtkXMLPolyDataReader>>(path); }
+
+} // namespace tcv

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include <math.h>
+
+#include "optics/segment.h"
+#include "optics/transfer.h"
+
+enum { BLOCK = 64 };
+
+static void end_block(TcLight *light) {
+  for (int k = 0; k < 3; ++k) {
+    light->color[k] += light->transmittance * light->block_color[k];
+    light->block_color[k] = 0;
+  }
+  light->depth += light->block_depth;
+  light->transmittance = exp(-light->depth);
+  light->block_depth = 0;
+  light->block_transmittance = 1;
+  light->block_length = 0;
+}
+
+static void add_segment(TcLight *light, const TcSegment *segment, const double near[3], const double far[3]) {
+  for (int k = 0; k < 3; ++k) {
+    light->block_color[k] += light->block_transmittance * (near[k] * segment->w0 + far[k] * segment->w1);
+  }
+  light->block_transmittance *= segment->transmittance;
+  light->block_depth += segment->depth;
+  if (++light->block_length == BLOCK) end_block(light);
+}
+
+/* Piece with low ≤ s < high: at a knot, the later one. */
+static int64_t piece_above(const TcPieces *pieces, double s) {
+  int64_t low = 0, high = pieces->count;
+  while (low < high) {
+    const int64_t middle = (low + high) / 2;
+    if (pieces->knots[middle] <= s) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+/* Piece with low < s ≤ high: where a scalar that falls from s finds itself. */
+static int64_t piece_below(const TcPieces *pieces, double s) {
+  int64_t low = 0, high = pieces->count;
+  while (low < high) {
+    const int64_t middle = (low + high) / 2;
+    if (pieces->knots[middle] < s) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+static TcOptics optics_at(const TcPiece *piece, double s) {
+  if (s <= piece->low) return piece->at_low;
+  if (s >= piece->high) return piece->at_high;
+  if (isinf(piece->low) || isinf(piece->high)) return piece->at_low; /* constant */
+  const double w = (s - piece->low) / (piece->high - piece->low), v = (piece->high - s) / (piece->high - piece->low);
+  TcOptics optics;
+  optics.extinction = v * piece->at_low.extinction + w * piece->at_high.extinction;
+  for (int k = 0; k < 3; ++k) optics.color[k] = v * piece->at_low.color[k] + w * piece->at_high.color[k];
+  return optics;
+}
+
+static void add_piece(TcLight *light, const TcPiece *piece, double length, double s0, double s1) {
+  const TcOptics near = optics_at(piece, s0), far = optics_at(piece, s1);
+  if (near.extinction == 0 && far.extinction == 0) return; /* transparent: nothing happens on it */
+  const TcSegment segment = near.extinction == far.extinction && near.color[0] == far.color[0] &&
+                                near.color[1] == far.color[1] && near.color[2] == far.color[2]
+                              ? tc_segment_constant(near.extinction * length)
+                              : tc_segment(near.extinction * length, far.extinction * length);
+  add_segment(light, &segment, near.color, far.color);
+}
+
+void tc_light_add_constant(TcLight *light, const TcPieces *pieces, double length, double s) {
+  add_piece(light, &pieces->pieces[piece_above(pieces, s)], length, s, s);
+}
+
+void tc_light_add(TcLight *light, const TcPieces *pieces, double length, double s0, double s1) {
+  if (s0 == s1) {
+    tc_light_add_constant(light, pieces, length, s0);
+    return;
+  }
+  const TcPiece *piece;
+  const double whole = fabs(s1 - s0);
+  /* The lengths of parts come from differences of scalars, not of positions along the segment: nothing cancels. */
+  if (s0 < s1) {
+    piece = &pieces->pieces[piece_above(pieces, s0)];
+    if (piece->high >= s1) add_piece(light, piece, length, s0, s1);
+    else {
+      for (; s0 < s1; ++piece) {
+        const double end = piece->high < s1 ? piece->high : s1;
+        add_piece(light, piece, length * ((end - s0) / whole), s0, end);
+        s0 = end;
+      }
+    }
+  } else {
+    piece = &pieces->pieces[piece_below(pieces, s0)];
+    if (piece->low <= s1) add_piece(light, piece, length, s0, s1);
+    else {
+      for (; s0 > s1; --piece) {
+        const double end = piece->low > s1 ? piece->low : s1;
+        add_piece(light, piece, length * ((s0 - end) / whole), s0, end);
+        s0 = end;
+      }
+    }
+  }
+}
+
+void tc_light_end(TcLight *light, double rgba[4]) {
+  end_block(light);
+  for (int k = 0; k < 3; ++k) rgba[k] = light->color[k];
+  rgba[3] = -expm1(-light->depth);
+}

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The emission–absorption integral over one segment on which extinction and colour are linear. */
+#ifndef TC_OPTICS_SEGMENT_H
+#define TC_OPTICS_SEGMENT_H
+
+/* With a = κ₀h and a1 = κ₁h, τ(u) = a u + (a1 − a) u²/2 and T = τ(1) = (a + a1)/2, the light that leaves the segment is
+ *
+ *     C = ∫₀¹ c(u) τ'(u) e^−τ(u) du = c₀ w₀ + c₁ w₁,     w₀ = 1 − Ψ,  w₁ = Ψ − e^−T,  Ψ = ∫₀¹ e^−τ(u) du
+ *
+ * (Williams & Max, A volume density optical model, 1992; Ψ as in Moreland & Angel, A fast high accuracy volume renderer for
+ * unstructured data, 2004). Both weights are integrals of something ≥ 0 and are computed without cancellation; they sum to
+ * the opacity 1 − e^−T. */
+typedef struct TcSegment {
+  double w0, w1;        /* weights of the colour at the near and the far end, ≥ 0 */
+  double alpha;         /* 1 − e^−T */
+  double transmittance; /* e^−T */
+  double depth;         /* T */
+} TcSegment;
+
+/* a, a1 ≥ 0, not NaN; values above 1e300 count as 1e300. Relative errors of w0, w1 and alpha are below 4e-15. */
+TcSegment tc_segment(double a, double a1);
+
+/* The same for a = a1 = depth: no Ψ. */
+TcSegment tc_segment_constant(double depth);
+
+#endif

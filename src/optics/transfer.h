@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#ifndef TC_OPTICS_TRANSFER_H
+#define TC_OPTICS_TRANSFER_H
+
+#include <tetcast/transfer_function.h>
+
+#include "base/base.h"
+
+/* Extinction and colour at a scalar: κ, r, g, b. */
+typedef struct TcOptics {
+  double extinction, color[3];
+} TcOptics;
+
+/* One linear piece between two neighbouring knots of either list. */
+typedef struct TcPiece {
+  double low, high; /* scalars at its ends; the outermost pieces are constant and end at ∓infinity */
+  TcOptics at_low, at_high;
+} TcPiece;
+
+/* count + 1 pieces between count distinct knots: piece i ends at knot[i], piece i + 1 begins there. */
+typedef struct TcPieces {
+  int64_t count;
+  const double *knots; /* [count], ascending */
+  const TcPiece *pieces;
+} TcPieces;
+
+struct TetcastTransferFunction {
+  TetcastContext *context;
+  int64_t color_count, extinction_count;
+  double *color;      /* [color_count][4] */
+  double *extinction; /* [extinction_count][2] */
+  double *knots;
+  TcPiece *piece;
+  TcPieces pieces;
+};
+
+TetcastStatus tc_transfer_create(TetcastContext *context, const TetcastTransferFunctionDesc *desc, TetcastTransferFunction **out);
+TetcastStatus tc_transfer_copy(TetcastContext *context, const TetcastTransferFunction *source, TetcastTransferFunction **out);
+void tc_transfer_destroy(TetcastTransferFunction *transfer);
+
+/* Colour map `name` over [low, high] with an extinction that rises from 0 to `extinction`. */
+TetcastStatus tc_transfer_create_preset(TetcastContext *context, const char *name, double low, double high, double extinction,
+                                        TetcastTransferFunction **out);
+const char *tc_preset_name(int i);
+
+/* Light gathered along a ray, front to back. Segments are composited in blocks, and blocks into the total, so that rounding
+ * grows with the block's length plus the number of blocks, not with the number of segments: with 10⁵ segments the relative error
+ * stays below (64 + 10⁵/64) · 2⁻⁵³ · O(1) ≈ 2e-13 even where all roundings point the same way. */
+typedef struct TcLight {
+  double color[3], depth, transmittance;                   /* total of the finished blocks */
+  double block_color[3], block_depth, block_transmittance; /* of the block under way */
+  int block_length;
+} TcLight;
+
+static inline TcLight tc_light_begin(void) { return (TcLight){.transmittance = 1, .block_transmittance = 1}; }
+
+/* Optical depth beyond which e^−τ is zero in double precision: what lies behind can't change a bit of the colour. */
+#define TC_OPAQUE_DEPTH 746.0
+
+static inline bool tc_light_opaque(const TcLight *light) { return light->depth + light->block_depth > TC_OPAQUE_DEPTH; }
+
+/* Adds what a segment of length `length` > 0 with scalars s0 → s1 (finite, linear in between) emits and absorbs. */
+void tc_light_add(TcLight *light, const TcPieces *pieces, double length, double s0, double s1);
+
+/* Adds a segment of constant scalar s (finite). */
+void tc_light_add_constant(TcLight *light, const TcPieces *pieces, double length, double s);
+
+/* Premultiplied colour and opacity of all that was added. */
+void tc_light_end(TcLight *light, double rgba[4]);
+
+#endif

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "traverse/rayspace.h"
+
+#include <float.h>
+
+bool tc_ray_begin(const TetcastVolume *volume, const double eye[3], const double direction[3], TcRay *ray) {
+  double along = 0, distance2 = 0;
+  for (int k = 0; k < 3; ++k) along += (volume->center[k] - eye[k]) * direction[k];
+  for (int k = 0; k < 3; ++k) {
+    ray->origin[k] = tc_without_tiny(eye[k] + along * direction[k]);
+    ray->direction[k] = direction[k];
+    const double d = ray->origin[k] - volume->center[k];
+    distance2 += d * d;
+  }
+  /* The sphere has a margin that covers the rounding here (volume.c). Written so that NaN passes the volume. */
+  if (!(distance2 <= volume->radius * volume->radius) || !(-along <= volume->radius)) return false;
+  ray->near = -along;
+  ray->kz = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (fabs(direction[k]) > fabs(direction[ray->kz])) ray->kz = k;
+  }
+  ray->kx = (ray->kz + 1) % 3;
+  ray->ky = (ray->kz + 2) % 3;
+  ray->shear_x = tc_without_tiny(direction[ray->kx] / direction[ray->kz]);
+  ray->shear_y = tc_without_tiny(direction[ray->ky] / direction[ray->kz]);
+  ray->inverse_z = 1 / direction[ray->kz];
+  return true;
+}
+
+/* Called when the rounded products of a × b are equal. Either they differ by their rounding errors, which fma gives exactly; or the ray
+ * passes exactly through the line ab. Then it is thought moved by (δ, δ²), and vertex i by (0, δ^(3+i)) with an infinitesimal δ
+ * (Edelsbrunner & Mücke, Simulation of simplicity, 1990):
+ *
+ *     (a − δ) × (b − δ) = a × b − δ (b.y − a.y) + δ² (b.x − a.x) + …
+ *
+ * so that all decisions at all cells belong to one and the same slightly moved ray and mesh, and every step of the walk has exactly
+ * one way out. A triangle that is seen exactly edge-on is never crossed. */
+double tc_edge_tie(const TcPoint *a, const TcPoint *b) {
+  const double p = a->x * b->y, q = a->y * b->x;
+  const double rest = fma(a->x, b->y, -p) - fma(a->y, b->x, -q);
+  if (rest != 0) return rest;
+  bool positive;
+  if (a->y != b->y) positive = b->y < a->y;
+  else if (a->x != b->x) positive = b->x > a->x;
+  else positive = (a->x > 0) == (b->id > a->id);
+  return positive ? DBL_MIN : -DBL_MIN;
+}

@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Ray space: the ray is the z axis, a vertex is a point (x, y) and a depth z. Which side of an edge the ray passes is the sign of a
+ * 2-D cross product, decided exactly for the projected points and the same from every cell at the edge: there are no cracks and no
+ * double hits, and no tolerance is needed.
+ *
+ * The shear that takes the ray to the z axis is that of Woop, Benthin, Wald: Watertight ray/triangle intersection, 2013. */
+#ifndef TC_TRAVERSE_RAYSPACE_H
+#define TC_TRAVERSE_RAYSPACE_H
+
+#include <math.h>
+
+#include "traverse/volume.h"
+
+typedef struct TcRay {
+  double origin[3], direction[3]; /* scaled; the origin is near the volume, the direction a unit vector */
+  double near;                    /* depth from which on the ray sees: z ≥ near */
+  int kx, ky, kz;                 /* kz: the direction's largest component */
+  double shear_x, shear_y, inverse_z;
+} TcRay;
+
+typedef struct TcPoint {
+  double x, y, z, s; /* projected vertex, depth along the ray (scaled length), point value */
+  uint32_t id;
+} TcPoint;
+
+/* Coordinates, origins and shears smaller than this count as zero. Then every x and y is a multiple of 2^−406, their products are
+ * multiples of 2^−812, and neither a product nor its rounding error can underflow. */
+#define TC_TINY 0x1p-150
+
+static inline double tc_without_tiny(double x) { return fabs(x) < TC_TINY ? 0 : x; }
+
+/* The ray from `eye` (scaled) along the unit vector `direction`: its origin is moved to where it is nearest to the volume's
+ * centre. False when it passes the volume's sphere. */
+bool tc_ray_begin(const TetcastVolume *volume, const double eye[3], const double direction[3], TcRay *ray);
+
+static inline TcPoint tc_project(const TetcastVolume *volume, const TcRay *ray, uint32_t id) {
+  double record[4], p[3];
+  tc_volume_vertex(volume, id, record);
+  for (int k = 0; k < 3; ++k) p[k] = record[k] - ray->origin[k];
+  TcPoint point;
+  point.x = p[ray->kx] - ray->shear_x * p[ray->kz];
+  point.y = p[ray->ky] - ray->shear_y * p[ray->kz];
+  point.z = p[ray->kz] * ray->inverse_z;
+  point.s = record[3];
+  point.id = id;
+  return point;
+}
+
+double tc_edge_tie(const TcPoint *a, const TcPoint *b);
+
+/* a × b, never zero and with the exact sign for the points given; where it is exactly zero, the sign for points moved by an
+ * infinitesimal amount (tc_edge_tie). tc_edge(a, b) = −tc_edge(b, a).
+ *
+ * Rounding is monotonic: where the two rounded products differ, their difference has the exact sign. */
+static inline double tc_edge(const TcPoint *a, const TcPoint *b) {
+  const double e = a->x * b->y - a->y * b->x;
+  return e != 0 ? e : tc_edge_tie(a, b);
+}
+
+/* Whether the ray crosses a triangle whose edges ab, bc, ca have these values. */
+static inline bool tc_inside(double ab, double bc, double ca) { return (ab > 0) == (bc > 0) && (bc > 0) == (ca > 0); }
+
+/* Depth and value where the ray crosses the triangle abc: the edges' values are the barycentric weights. */
+static inline void tc_crossing(const TcPoint *a, const TcPoint *b, const TcPoint *c, double ab, double bc, double ca, double *z,
+                               double *s) {
+  const double inverse = 1 / (ab + bc + ca);
+  *z = (bc * a->z + ca * b->z + ab * c->z) * inverse;
+  *s = (bc * a->s + ca * b->s + ab * c->s) * inverse;
+}
+
+#endif

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#ifndef TC_TRAVERSE_VOLUME_H
+#define TC_TRAVERSE_VOLUME_H
+
+#include <tetcast/volume.h>
+
+#include "mesh/adjacency.h"
+#include "traverse/embree.h"
+
+/* Coordinates are stored times 2^−exponent, so that the largest is near 1: exact, and no unit can overflow or underflow later.
+ * "Scaled" below means in these units. */
+struct TetcastVolume {
+  TetcastContext *context;
+  TetcastTraversal traversal;
+  int exponent;
+  double center[3], radius; /* of a sphere around all cells, scaled */
+  int64_t vertex_count, cell_count, mesh_cell_count;
+
+  /* [vertex_count][4]: x, y, z scaled, and the point field's value; float when the mesh and the field came as float32. */
+  void *vertices;
+  bool vertices_are_double, mesh_is_double;
+
+  TcAdjacency adjacency; /* without cells where Embree holds every cell; `vertices` of it only there */
+  TcEmbree *embree;
+
+  bool has_field;
+  TetcastAssociation association;
+  double *cell_values; /* [cell_count] with a cell field; not finite: transparent */
+  TetcastVolumeInfo info;
+};
+
+/* Values of larger magnitude count as infinite: differences of two of them could overflow. */
+#define TC_LARGEST_VALUE 0x1p1022
+
+TetcastStatus tc_volume_create(TetcastContext *context, const TetcastMesh *mesh, const TetcastVolumeDesc *desc,
+                               TetcastVolume **volume);
+void tc_volume_destroy(TetcastVolume *volume);
+TetcastStatus tc_volume_set_field(TetcastVolume *volume, const TetcastField *field);
+void tc_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info);
+
+/* x, y, z scaled and the point value. */
+static inline void tc_volume_vertex(const TetcastVolume *volume, uint32_t i, double record[4]) {
+  if (volume->vertices_are_double) {
+    const double *v = (const double *)volume->vertices + 4 * (size_t)i;
+    for (int k = 0; k < 4; ++k) record[k] = v[k];
+  } else {
+    const float *v = (const float *)volume->vertices + 4 * (size_t)i;
+    for (int k = 0; k < 4; ++k) record[k] = (double)v[k];
+  }
+}
+
+#endif

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: Apache-2.0
+# Sourced by each script with the path of the command as $1: a folder of its own to work in, and checks that count
+# failures.
+tetcast=$(realpath "$1")
+work=$(mktemp -d)
+trap 'rm -rf "$work" "$work.out" "$work.err"' EXIT
+cd "$work" || exit 1
+ulimit -c 0
+failures=0
+checks=0
+
+fail() {
+  echo "FAILED: $*"
+  failures=$((failures + 1))
+}
+
+# Ends the script.
+finish() {
+  echo "$checks checks, $failures failures"
+  [ "$failures" = 0 ]
+  exit
+}
+
+needs() {
+  for adapter; do
+    if ! "$tetcast" --version | grep -q "^adapters:.*$adapter"; then
+      echo "skipped: built without $adapter"
+      exit 77
+    fi
+  done
+}
+
+files() { find . | sort; }
+
+# refuse CODE TEXT ARGUMENTS…: the exit code is CODE, nothing comes on standard output, one line on standard error that
+# contains TEXT, and no file appears, changes its size or goes.
+refuse() {
+  local code=$1 text=$2 before after got
+  shift 2
+  checks=$((checks + 1))
+  before=$(find . -printf '%p %s\n' | sort)
+  "$tetcast" "$@" >"$work.out" 2>"$work.err"
+  got=$?
+  after=$(find . -printf '%p %s\n' | sort)
+  [ "$got" = "$code" ] || fail "exit code $got instead of $code: tetcast $*"
+  [ ! -s "$work.out" ] || fail "standard output: $(head -c 200 "$work.out"): tetcast $*"
+  [ "$(wc -l <"$work.err")" = 1 ] || fail "not one line on standard error: $(head -5 "$work.err"): tetcast $*"
+  grep -q '^tetcast: error: ' "$work.err" || fail "no error line: tetcast $*"
+  grep -qF -- "$text" "$work.err" || fail "'$text' is missing in '$(cat "$work.err")': tetcast $*"
+  [ "$before" = "$after" ] || fail "files changed: $(diff <(echo "$before") <(echo "$after")): tetcast $*"
+  rm -f "$work.out" "$work.err"
+}
+
+# accept ARGUMENTS…: exit code 0 and nothing on standard error; the output is kept in $output.
+accept() {
+  local got
+  checks=$((checks + 1))
+  output=$("$tetcast" "$@" 2>"$work.err")
+  got=$?
+  [ "$got" = 0 ] || fail "exit code $got: $(cat "$work.err"): tetcast $*"
+  [ ! -s "$work.err" ] || fail "standard error: $(cat "$work.err"): tetcast $*"
+  rm -f "$work.err"
+}
+
+# warn TEXT ARGUMENTS…: exit code 0 and a warning that contains TEXT.
+warn() {
+  local text=$1
+  shift
+  checks=$((checks + 1))
+  "$tetcast" "$@" >/dev/null 2>"$work.err" || fail "exit code $?: $(cat "$work.err"): tetcast $*"
+  grep -F 'tetcast: warning: ' "$work.err" | grep -qF -- "$text" ||
+    fail "no warning '$text' in '$(cat "$work.err")': tetcast $*"
+  rm -f "$work.err"
+}
+
+exists() {
+  checks=$((checks + 1))
+  for name; do [ -s "$name" ] || fail "$name is missing or empty"; done
+}
+
+same() {
+  checks=$((checks + 1))
+  cmp "$1" "$2" || fail "$1 and $2 differ${3:+: $3}"
+}
+
+differ() {
+  checks=$((checks + 1))
+  if cmp -s "$1" "$2"; then fail "$1 and $2 are the same${3:+: $3}"; fi
+}
+
+contains() {
+  checks=$((checks + 1))
+  printf '%s' "$output" | grep -qE -- "$1" || fail "no '$1' in: $output"
+}
+
+# vtu FILE CELLS TYPE [POINTS]: an ASCII file; CELLS are lists of point numbers separated by ';', TYPE what all of them
+# are. The points are the unit cube's corners, in the order of VTK's hexahedron.
+cube='0 0 0  1 0 0  1 1 0  0 1 0  0 0 1  1 0 1  1 1 1  0 1 1'
+vtu() {
+  local file=$1 cells=$2 type=$3 points=${4:-$cube} connectivity offsets='' types='' values='' count=0 end=0 cell
+  local IFS=';'
+  for cell in $cells; do
+    local IFS=' '
+    set -- $cell
+    end=$((end + $#))
+    offsets="$offsets $end"
+    types="$types $type"
+    values="$values $count.5"
+    count=$((count + 1))
+  done
+  connectivity=${cells//;/ }
+  cat >"$file" <<END
+<?xml version="1.0"?>
+<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">
+<UnstructuredGrid><Piece NumberOfPoints="8" NumberOfCells="$count">
+<PointData>
+<DataArray type="Float64" Name="s" format="ascii">${scalar:-0 1 3 2 3 4 6 5}</DataArray>
+<DataArray type="Float32" Name="v" NumberOfComponents="3" format="ascii">$cube</DataArray>
+<DataArray type="Float64" Name="flat" format="ascii">7 7 7 7 7 7 7 7</DataArray>
+</PointData>
+<CellData>
+<DataArray type="Float64" Name="c d" format="ascii">$values</DataArray>
+</CellData>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">$points</DataArray></Points>
+<Cells>
+<DataArray type="Int64" Name="connectivity" format="ascii">$connectivity</DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii">$offsets</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">$types</DataArray>
+</Cells>
+</Piece></UnstructuredGrid></VTKFile>
+END
+}
+five_tetrahedra='0 1 3 4;1 2 3 6;1 4 5 6;3 4 6 7;1 3 4 6'

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+# What a run writes, and that it writes all of it or nothing.
+. "$(dirname "$0")/lib.sh"
+needs vtk openimageio
+vtu cube.vtu "$five_tetrahedra" 10
+
+# Names and formats.
+accept render cube.vtu --size 40x30
+exists cube.png
+for name in a.png a.exr a.tif a.tiff a.jpg a.jpeg; do
+  accept render cube.vtu -o $name --size 40x30
+  exists $name
+done
+for pair in png:uint16 exr:float tif:uint8 tif:uint16 tif:half tif:float tif:double; do
+  accept render cube.vtu -o "${pair#*:}.${pair%:*}" --size 40x30 --pixel-type "${pair#*:}"
+done
+echo old >old.png
+accept render cube.vtu -o old.png --size 40x30
+same old.png cube.png
+mkdir folder
+accept render cube.vtu -o folder/a.png --size 40x30
+same folder/a.png cube.png
+
+# What must not change the picture.
+accept render cube.vtu -o one.tif --size 61x47 --pixel-type double --threads 1
+accept render cube.vtu -o two.tif --size 61x47 --pixel-type double --threads 2
+same one.tif two.tif 'threads'
+accept render cube.vtu -o again.tif --size 61x47 --pixel-type double --repeat 3 --quiet
+same one.tif again.tif 'repeats'
+
+# What must.
+for option in '--samples 4' '--preset inferno' '--range 0,3' '--array v' '--array v:2' '--array c d' '--fovy 20' \
+  '--eye 3,3,3'; do
+  accept render cube.vtu -o other.tif --size 61x47 --pixel-type double ${option%% *} "${option#* }"
+  differ one.tif other.tif "$option"
+done
+accept render cube.vtu -o black.png --size 40x30 --background 0,0,0
+differ black.png cube.png background
+accept render cube.vtu -o flat.png --array flat --size 40x30
+warn '--background has no effect' render cube.vtu -o b.exr --size 9x9 --background 0,0,0
+accept render cube.vtu -o b.exr --size 9x9 --background 0,0,0 --quiet
+
+# Transfer functions: extinction 2 is the opacity 1 - exp(-2) of a unit; VTK's model takes opacity as extinction.
+echo '{"color": [[0,1,0,0],[6,0,0,1]], "extinction": [[0,0],[6,0.5]]}' >extinction.json
+echo '{"color": [[0,1,0,0],[6,0,0,1]], "opacity": [[0,0],[6,1]], "unit_distance": 2}' >opacity.json
+accept render cube.vtu -o extinction.tif --size 40x30 --pixel-type double --transfer extinction.json
+accept render cube.vtu -o opacity.tif --size 40x30 --pixel-type double --transfer opacity.json \
+  --opacity-model vtk-unstructured
+same extinction.tif opacity.tif 'opacity model'
+accept render cube.vtu -o unit.tif --size 40x30 --pixel-type double --transfer opacity.json
+differ unit.tif opacity.tif 'opacity model'
+accept render cube.vtu -o ospray.tif --size 40x30 --pixel-type double --transfer opacity.json --opacity-model ospray
+same ospray.tif opacity.tif 'opacity model'
+warn '--opacity-model has no effect' \
+  render cube.vtu -o a.png --size 9x9 --transfer extinction.json --opacity-model ospray
+
+# Values that are not finite.
+scalar='0 1 nan 2 3 4 6 5' vtu nan.vtu "$five_tetrahedra" 10
+warn 'NaN' render nan.vtu -o nan.png --size 40x30
+scalar='nan nan nan nan nan nan nan nan' vtu empty.vtu "$five_tetrahedra" 10
+warn 'NaN' render empty.vtu -o empty.png --size 40x30
+
+# Statistics.
+accept render cube.vtu -o s.png --size 40x30 --samples 4 --repeat 3 --threads 2 --traversal faces --stats stats.json
+output=$(cat stats.json)
+for key in read_seconds prepare_seconds write_seconds; do contains "\"$key\": [0-9.e-]+,"; done
+contains '"rays": 4800,'
+contains '"segments": [1-9][0-9]*,'
+contains '"peak_rss_bytes": [1-9][0-9]{6,},'
+contains '"volume_bytes": [1-9][0-9]*,'
+contains '"tetrahedra": 5,'
+contains '"vertices": 8,'
+contains '"threads": 2,'
+contains '"isa": "[a-z0-9]+",'
+contains '"precision": "double",'
+contains '"traversal": "faces"'
+times=$(tr -d ' \n' <stats.json | sed 's/.*"render_seconds":\[//; s/\].*//' | tr ',' '\n' | grep -c .)
+[ "$times" = 3 ] || fail "$times render_seconds instead of 3"
+"$tetcast" render cube.vtu -o s.png --size 9x9 --stats /dev/stdout | grep -q '"rays": 81' ||
+  fail 'statistics to standard output'
+refuse_stats() {
+  "$tetcast" render cube.vtu -o s.png --size 9x9 "$@" 2>err && fail "exit code 0: $*"
+  grep -q '^tetcast: error: .*/dev/full' err || fail "$(cat err): $*"
+}
+[ -c /dev/full ] && refuse_stats --stats /dev/full
+rm -f err
+
+# A full disk: files must not grow beyond a limit, in blocks of 1024 bytes.
+rm -f ./*.json
+for name in full.png full.exr full.tif full.jpg; do
+  for blocks in 0 1 2 8; do
+    echo old >$name
+    (ulimit -f $blocks && "$tetcast" render cube.vtu -o $name --size 400x300) 2>&1 | cat >err
+    [ "$(wc -l <err)" = 1 ] && grep -q "^tetcast: error: .*$name.*too large" err ||
+      fail "$name at $blocks KiB: $(cat err)"
+    [ "$(cat $name)" = old ] || fail "$name at $blocks KiB was changed"
+  done
+done
+(ulimit -f 0 && "$tetcast" render cube.vtu -o full.png --size 9x9) 2>/dev/null && fail 'exit code 0 on a full disk'
+find . -name '.*tetcast*' | grep . && fail 'temporary files are left'
+if mkdir small && mount -t tmpfs -o size=16k tmpfs small 2>/dev/null; then
+  refuse 1 'No space left' render cube.vtu -o small/a.png --size 400x300
+  umount small
+fi
+finish

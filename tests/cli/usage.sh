@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0
+# What is wrong with a command line is said before anything is read, with exit code 2.
+. "$(dirname "$0")/lib.sh"
+
+accept --version
+contains '^tetcast [0-9]+\.[0-9]+\.[0-9]+'
+contains 'Embree [34]\.'
+contains 'adapters:'
+accept --help
+contains 'render'
+for command in render info mesh; do
+  accept $command --help
+  contains "Usage: tetcast $command"
+  contains 'Example'
+  [ "$(echo "$output" | wc -l)" -le 40 ] || fail "help of $command does not fit a screen"
+  [ "$(echo "$output" | wc -L)" -le 120 ] || fail "help of $command is too wide"
+done
+accept render -h
+
+# Quick: no adapter is loaded.
+start=$(date +%s%N)
+for _ in 1 2 3 4 5 6 7 8 9 10; do "$tetcast" --version >/dev/null; done
+[ $((($(date +%s%N) - start) / 10000000)) -le 200 ] || fail "--version takes $((($(date +%s%N) - start) / 10000000)) ms"
+
+refuse 2 'no command'
+refuse 2 "unknown command 'rendre'" rendre x.vtu
+refuse 2 "unknown option '--vers'" --vers
+refuse 2 'no input' render
+refuse 2 'no input' info
+refuse 2 'more than one input' render a.vtu b.vtu
+refuse 2 'more than one input' info a.vtu b.vtu
+refuse 2 '--bogus' render a.vtu --bogus
+refuse 2 '--bogus' info a.vtu --bogus
+refuse 2 'option -x' render a.vtu -x
+refuse 2 '--json takes no argument' info a.vtu --json=1
+refuse 2 '-o needs an argument' render a.vtu -o
+refuse 2 '--size needs an argument' render a.vtu --size
+for size in 0x10 10x0 -5x5 10 10x 10x10x10 1.5x2 x 4e9x1 2000000x1 1048576x1048576 '10 x10' 10x10a; do
+  refuse 2 "--size $size: expected WxH" render a.vtu --size "$size"
+done
+for number in '' 1,2 1,2,3,4 1,,3 1,2,x nan,0,0 inf,0,0 1e999,0,0 0x1,0,0 ' 1,2,3' '1,2,3 ' 1,2,3, --; do
+  refuse 2 "expected three numbers" render a.vtu --eye "$number"
+done
+refuse 2 'not all zero' render a.vtu --up 0,0,0
+for angle in 0 180 -5 360 x; do refuse 2 'angle' render a.vtu --fovy "$angle"; done
+for height in 0 -1 inf; do refuse 2 'height' render a.vtu --ortho "$height"; done
+for samples in 0 -1 1.5 65537 x; do refuse 2 'whole number' render a.vtu --samples "$samples"; done
+for threads in -1 1.5 5000 x; do refuse 2 'whole number' render a.vtu --threads "$threads"; done
+for repeat in 0 -1 x; do refuse 2 'whole number' render a.vtu --repeat "$repeat"; done
+for background in 1,1 1,1,1,1,1 2,0,0 -1,0,0 white; do refuse 2 'r,g,b' render a.vtu --background "$background"; done
+for range in 1 3,1 1,2,3 a,b; do refuse 2 'LO not above HI' render a.vtu --range "$range"; done
+refuse 2 'viridis' render a.vtu --preset nope
+refuse 2 'uint8' render a.vtu --pixel-type int8
+refuse 2 'uint8' render a.vtu --pixel-type ''
+refuse 2 'shell or faces' render a.vtu --traversal walk
+refuse 2 'vtk-unstructured' render a.vtu --opacity-model vtk
+refuse 2 'exclude each other' render a.vtu --fovy 30 --ortho 1
+refuse 2 'exclude each other' render a.vtu --transfer t.json --preset viridis
+refuse 2 'exclude each other' render a.vtu --range 0,1 --transfer t.json
+refuse 2 'same point' render a.vtu --eye 1,2,3 --target 1,2,3
+refuse 2 'parallel' render a.vtu --eye 0,0,5 --target 0,0,0 --up 0,0,1
+finish

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+# How a camera that is given in part is completed, as the saved scene states it.
+. "$(dirname "$0")/lib.sh"
+needs vtk openimageio
+vtu cube.vtu "$five_tetrahedra" 10
+
+# camera ARGUMENTS…: the camera as one line, numbers rounded.
+camera() {
+  accept render cube.vtu -o a.png --size "${size:-20x20}" --save-scene s.json "$@"
+  output=$(tr -d ' \n' <s.json | sed 's/.*"camera"://; s/}.*//' | sed -E 's/([0-9]\.[0-9]{4})[0-9]*/\1/g')
+}
+camera
+contains '"eye":\[0.5,0.5,3.8460\],"target":\[0.5,0.5,0.5\],"up":\[0.0,1.0,0.0\],"fovy":(30.0|29.9999)'
+camera --eye 5,5,5
+contains '"eye":\[5.0,5.0,5.0\],"target":\[0.5,0.5,0.5\],"up":\[0.0,1.0,0.0\]'
+camera --eye 0.5,7,0.5
+contains '"target":\[0.5,0.5,0.5\],"up":\[0.0,0.0,1.0\]'
+camera --eye 0.5,0.5,0.5
+contains '"eye":\[0.5,0.5,0.5\],"target":\[0.5,0.5,-'
+camera --target 1,2,3
+contains '"eye":\[1.0,2.0,6.3460\],"target":\[1.0,2.0,3.0\]'
+camera --up 0,0,2
+contains '"eye":\[0.5,-2.8460,0.5\],"target":\[0.5,0.5,0.5\],"up":\[0.0,0.0,2.0\]'
+camera --fovy 90
+contains '"eye":\[0.5,0.5,1.7247\].*"fovy":90.0'
+camera --ortho 2.5
+contains '"eye":\[0.5,0.5,3.8460\].*"ortho":2.5'
+camera --fovy 30
+contains '"eye":\[0.5,0.5,3.8460\]'
+size=10x20 camera --fovy 30 # half as wide as high: farther away
+contains '"eye":\[0.5,0.5,6.9'
+refuse 1 'parallel' render cube.vtu -o b.png --eye 5,0.5,0.5 --up 1,0,0
+finish

@@ -1,0 +1,469 @@
+// SPDX-License-Identifier: Apache-2.0
+// What lands in image files, and that nothing does when writing fails.
+#include <algorithm>
+#include <cmath>
+#include <csetjmp>
+#include <csignal>
+#include <cstdarg>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+extern "C" {
+#include <cmocka.h>
+}
+
+#include <OpenImageIO/imageio.h>
+
+#include <tetcast/image.h>
+
+namespace fs = std::filesystem;
+using OIIO::TypeDesc;
+
+static TetcastContext *context;
+static std::string last_error, last_warning;
+static fs::path folder;
+
+static void remember(void *, TetcastSeverity severity, const char *text) {
+  (severity == TETCAST_SEVERITY_ERROR ? last_error : last_warning) = text;
+}
+
+static int setup(void **) {
+  TetcastContextDesc desc = tetcast_context_desc_default();
+  desc.message = remember;
+  if (tetcast_context_create(&desc, &context) != TETCAST_OK)
+    return 1;
+  char name[] = "/tmp/tetcast-image-XXXXXX";
+  if (!mkdtemp(name))
+    return 1;
+  folder = name;
+  return 0;
+}
+
+static int teardown(void **) {
+  tetcast_context_destroy(&context);
+  fs::remove_all(folder);
+  return 0;
+}
+
+// Counts what is printed on stderr, by any library, while it lives.
+class Listener {
+public:
+  Listener() : m_words(std::tmpfile()) {
+    std::fflush(stderr);
+    m_saved = dup(2);
+    dup2(fileno(m_words), 2);
+  }
+  ~Listener() {
+    if (m_saved >= 0)
+      stop();
+  }
+  long stop() {
+    std::fflush(stderr);
+    dup2(m_saved, 2);
+    close(m_saved);
+    m_saved = -1;
+    const long count = std::fseek(m_words, 0, SEEK_END) == 0 ? std::ftell(m_words) : -1;
+    std::fclose(m_words);
+    return count;
+  }
+
+private:
+  std::FILE *m_words;
+  int m_saved;
+};
+
+static size_t file_count() {
+  return size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+static void clear_folder() {
+  for (const auto &entry : fs::directory_iterator(folder))
+    fs::remove_all(entry.path());
+  last_error.clear();
+  last_warning.clear();
+}
+
+// Premultiplied values with all kinds of alpha, some colours brighter than white, some pixels empty.
+static std::vector<double> sample_pixels(int64_t width, int64_t height) {
+  std::vector<double> pixels;
+  uint64_t state = 1;
+  const auto next = [&state] {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return double(state >> 11) * 0x1p-53;
+  };
+  for (int64_t i = 0; i < width * height; i++) {
+    const double alpha = i % 7 == 0 ? 0 : i % 7 == 1 ? 1 : next();
+    for (int c = 0; c < 3; c++)
+      pixels.push_back(alpha * next() * (i % 11 == 0 ? 1.5 : 1));
+    pixels.push_back(alpha);
+  }
+  return pixels;
+}
+
+static TetcastFrame *borrow_frame(void *pixels, TetcastType type, int64_t width, int64_t height, int64_t row_stride) {
+  TetcastFrameDesc desc = tetcast_frame_desc_default();
+  desc.width = width;
+  desc.height = height;
+  desc.type = type;
+  desc.pixels = pixels;
+  desc.row_stride = row_stride;
+  TetcastFrame *frame = nullptr;
+  assert_int_equal(tetcast_frame_create(context, &desc, &frame), TETCAST_OK);
+  return frame;
+}
+
+static TetcastStatus write(const fs::path &path, std::vector<double> &pixels, int64_t width, int64_t height,
+                           TetcastPixelType type, const double *background = nullptr) {
+  TetcastFrame *frame = borrow_frame(pixels.data(), TETCAST_TYPE_FLOAT64, width, height, 0);
+  TetcastImageDesc desc = tetcast_image_desc_default();
+  desc.pixel_type = type;
+  if (background)
+    std::copy(background, background + 4, desc.background);
+  const TetcastStatus status = tetcast_image_write(context, path.c_str(), frame, &desc);
+  tetcast_frame_destroy(&frame);
+  return status;
+}
+
+struct Picture {
+  OIIO::ImageSpec spec;
+  std::vector<double> values;
+};
+
+// As stored: neither premultiplied nor otherwise changed.
+static Picture read_back(const fs::path &path) {
+  OIIO::ImageSpec config;
+  config.attribute("oiio:UnassociatedAlpha", 1);
+  auto input = OIIO::ImageInput::open(path.string(), &config);
+  if (!input)
+    fail_msg("%s: %s", path.c_str(), OIIO::geterror().c_str());
+  Picture picture;
+  picture.spec = input->spec();
+  picture.values.resize(size_t(picture.spec.width) * size_t(picture.spec.height) * size_t(picture.spec.nchannels));
+  assert_true(input->read_image(0, 0, 0, picture.spec.nchannels, TypeDesc::DOUBLE, picture.values.data()));
+  input->close();
+  return picture;
+}
+
+static const TypeDesc::BASETYPE base_types[] = {TypeDesc::UNKNOWN, TypeDesc::UINT8, TypeDesc::UINT16,
+                                                TypeDesc::HALF,    TypeDesc::FLOAT, TypeDesc::DOUBLE};
+
+static double quantized(double value, double top) {
+  return std::floor(std::clamp(value, 0.0, 1.0) * top + 0.5) / top;
+}
+
+// Compares with values computed here; `tolerance` is for formats that lose information.
+static void compare(const Picture &picture, const std::vector<double> &pixels, const double background[4],
+                    double tolerance) {
+  const bool floating = picture.spec.format.is_floating_point();
+  const int channels = picture.spec.nchannels;
+  const double top = picture.spec.format == TypeDesc::UINT16 ? 65535 : 255;
+  for (size_t i = 0; i < pixels.size() / 4; i++) {
+    const double *p = &pixels[4 * i];
+    const double alpha = p[3] + (1 - p[3]) * background[3];
+    for (int c = 0; c < channels; c++) {
+      double expected = p[c];
+      if (!floating && c == 3)
+        expected = quantized(alpha, top);
+      else if (!floating) {
+        const double color = p[c] + (1 - p[3]) * background[3] * background[c];
+        expected = quantized(channels == 3 ? color : alpha > 0 ? color / alpha : 0, top);
+      }
+      const double got = picture.values[i * size_t(channels) + size_t(c)];
+      const double error =
+          picture.spec.format == TypeDesc::HALF ? std::max(1e-7, std::fabs(expected) * 0x1p-11) * 1.001 : tolerance;
+      if (std::fabs(got - expected) > error)
+        fail_msg("pixel %zu channel %d: %.17g instead of %.17g", i, c, got, expected);
+    }
+  }
+}
+
+static void formats_hold_what_they_should(void **) {
+  const int64_t width = 37, height = 131; // two whole batches of rows and a part
+  std::vector<double> pixels = sample_pixels(width, height);
+  const double white[4] = {1, 1, 1, 1}, blue[4] = {0.2, 0.3, 0.9, 1}, glass[4] = {0.8, 0.4, 0.1, 0.35},
+               none[4] = {0, 0, 0, 0};
+  const struct {
+    const char *name;
+    bool possible[6]; // default, uint8, uint16, half, float, double
+    TypeDesc::BASETYPE standard;
+  } formats[] = {{"a.png", {true, true, true, false, false, false}, TypeDesc::UINT8},
+                 {"a.PNG", {true, true, true, false, false, false}, TypeDesc::UINT8},
+                 {"a.exr", {true, false, false, true, true, false}, TypeDesc::HALF},
+                 {"a.tif", {true, true, true, true, true, true}, TypeDesc::FLOAT},
+                 {"a.tiff", {true, true, true, true, true, true}, TypeDesc::FLOAT},
+                 {"a.jpg", {true, true, false, false, false, false}, TypeDesc::UINT8},
+                 {"a.bmp", {true, true, false, false, false, false}, TypeDesc::UINT8},
+                 {"a.tga", {true, true, false, false, false, false}, TypeDesc::UINT8}};
+  for (const auto &format : formats) {
+    for (int type = 0; type < 6; type++) {
+      for (const double *background : {white, blue, glass, none}) {
+        clear_folder();
+        const fs::path path = folder / format.name;
+        Listener writing;
+        const TetcastStatus status = write(path, pixels, width, height, TetcastPixelType(type), background);
+        assert_int_equal(writing.stop(), 0);
+        TetcastImageDesc desc = tetcast_image_desc_default();
+        desc.pixel_type = TetcastPixelType(type);
+        Listener listener;
+        const TetcastStatus check = tetcast_image_check(context, path.c_str(), &desc);
+        assert_int_equal(listener.stop(), 0);
+        assert_int_equal(check, status);
+        if (!format.possible[type]) {
+          assert_int_equal(status, TETCAST_ERROR_ARGUMENT);
+          assert_non_null(std::strstr(last_error.c_str(), format.name));
+          assert_int_equal(file_count(), 0);
+          continue;
+        }
+        assert_int_equal(status, TETCAST_OK);
+        assert_int_equal(file_count(), 1);
+        const Picture picture = read_back(path);
+        const TypeDesc stored = picture.spec.format;
+        assert_int_equal(stored.basetype, type ? base_types[type] : format.standard);
+        assert_int_equal(picture.spec.width, width);
+        assert_int_equal(picture.spec.height, height);
+        const bool jpeg = format.name[2] == 'j';
+        const bool alpha = !jpeg && (stored.is_floating_point() || background[3] < 1);
+        assert_int_equal(picture.spec.nchannels, alpha ? 4 : 3);
+        if (alpha)
+          assert_int_equal(picture.spec.alpha_channel, 3);
+        if (jpeg && background[3] < 1)
+          assert_false(last_warning.empty());
+        if (!jpeg) // random pixels are the worst case of JPEG: seen with a smooth picture below
+          compare(picture, pixels, background, stored == TypeDesc::DOUBLE ? 0 : 1e-7); // the reader goes through float
+      }
+    }
+  }
+}
+
+static void jpeg_is_near_a_smooth_picture(void **) {
+  clear_folder();
+  const int64_t width = 64, height = 48;
+  std::vector<double> pixels;
+  for (int64_t y = 0; y < height; y++)
+    for (int64_t x = 0; x < width; x++)
+      for (const double value : {0.5 * double(x) / 64, 0.5 * double(y) / 48, 0.25, 0.75})
+        pixels.push_back(value);
+  const double gray[4] = {0.5, 0.5, 0.5, 1};
+  assert_int_equal(write(folder / "a.jpeg", pixels, width, height, TETCAST_PIXEL_DEFAULT, gray), TETCAST_OK);
+  compare(read_back(folder / "a.jpeg"), pixels, gray, 0.02);
+}
+
+static void doubles_come_back_bit_for_bit(void **) {
+  const int64_t width = 64, height = 70;
+  std::vector<double> pixels = sample_pixels(width, height);
+  const double awkward[] = {0x1p-1074, -0.0, 1e300, -1e-300, 1 + 0x1p-52, 1.0 / 3, 1e-17, 65504};
+  std::copy(std::begin(awkward), std::end(awkward), pixels.begin());
+  clear_folder();
+  assert_int_equal(write(folder / "a.tif", pixels, width, height, TETCAST_PIXEL_DOUBLE), TETCAST_OK);
+  const Picture picture = read_back(folder / "a.tif");
+  assert_int_equal(picture.values.size(), pixels.size());
+  assert_memory_equal(picture.values.data(), pixels.data(), pixels.size() * sizeof(double));
+}
+
+// The tag that says how alpha is meant, without OpenImageIO in between.
+static int tiff_short_tag(const fs::path &path, unsigned wanted) {
+  std::ifstream file(path, std::ios::binary);
+  const std::vector<unsigned char> bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const auto u16 = [&](size_t at) { return unsigned(bytes[at]) | unsigned(bytes[at + 1]) << 8; };
+  const auto u32 = [&](size_t at) { return u16(at) | u16(at + 2) << 16; };
+  assert_int_equal(bytes[0], 'I');
+  const size_t directory = u32(4);
+  for (size_t i = 0; i < u16(directory); i++)
+    if (u16(directory + 2 + 12 * i) == wanted)
+      return int(u16(directory + 2 + 12 * i + 8));
+  return -1;
+}
+
+static void tiff_states_how_alpha_is_meant(void **) {
+  const double glass[4] = {1, 1, 1, 0.5};
+  std::vector<double> pixels = sample_pixels(8, 8);
+  const unsigned extra_samples = 338, predictor = 317;
+  clear_folder();
+  assert_int_equal(write(folder / "a.tif", pixels, 8, 8, TETCAST_PIXEL_DOUBLE), TETCAST_OK);
+  assert_int_equal(tiff_short_tag(folder / "a.tif", extra_samples), 1); // associated
+  assert_true(tiff_short_tag(folder / "a.tif", predictor) <= 1);        // none: every reader can
+  assert_int_equal(write(folder / "b.tif", pixels, 8, 8, TETCAST_PIXEL_UINT8, glass), TETCAST_OK);
+  assert_int_equal(tiff_short_tag(folder / "b.tif", extra_samples), 2); // unassociated
+}
+
+static void rows_may_lie_apart(void **) {
+  const int64_t width = 5, height = 3;
+  std::vector<float> pixels(6 * 4 * 3, -1.0f); // a column of padding, which must not be seen
+  std::vector<double> tight;
+  for (int64_t y = 0; y < height; y++)
+    for (int64_t i = 0; i < 4 * width; i++)
+      tight.push_back(pixels[size_t(y * 24 + i)] = float(y * 20 + i) / 64.0f);
+  TetcastFrame *frame = borrow_frame(pixels.data(), TETCAST_TYPE_FLOAT32, width, height, 24 * sizeof(float));
+  const double white[4] = {1, 1, 1, 1};
+  for (const char *name : {"a.exr", "a.tif", "a.png"}) {
+    assert_int_equal(tetcast_image_write(context, (folder / name).c_str(), frame, nullptr), TETCAST_OK);
+    compare(read_back(folder / name), tight, white, 1e-7);
+  }
+  tetcast_frame_destroy(&frame);
+}
+
+static void not_a_number_is_written_without_a_crash(void **) {
+  std::vector<double> pixels = {NAN, INFINITY, -INFINITY, NAN, 1e308, -1, 0, INFINITY};
+  for (const char *name : {"a.png", "a.exr", "a.tif", "a.jpg"})
+    assert_int_equal(write(folder / name, pixels, 2, 1, TETCAST_PIXEL_DEFAULT), TETCAST_OK);
+}
+
+static std::string content(const fs::path &path) {
+  std::ifstream file(path, std::ios::binary);
+  return std::string((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+}
+
+static void same_picture_same_file(void **) {
+  std::vector<double> pixels = sample_pixels(20, 20);
+  const char *const names[] = {"a.png", "a.exr", "a.tif", "a.jpg"};
+  std::string first[4];
+  clear_folder();
+  for (int i = 0; i < 4; i++) {
+    assert_int_equal(write(folder / names[i], pixels, 20, 20, TETCAST_PIXEL_DEFAULT), TETCAST_OK);
+    first[i] = content(folder / names[i]);
+  }
+  usleep(1100000); // a time in the file would differ
+  for (int i = 0; i < 4; i++) {
+    assert_int_equal(write(folder / names[i], pixels, 20, 20, TETCAST_PIXEL_DEFAULT), TETCAST_OK);
+    if (content(folder / names[i]) != first[i])
+      fail_msg("%s differs", names[i]);
+  }
+}
+
+static void expect_failure(const fs::path &path, TetcastStatus status, const char *word) {
+  std::vector<double> pixels = sample_pixels(4, 4);
+  for (const bool check : {false, true}) {
+    last_error.clear();
+    assert_int_equal(check ? tetcast_image_check(context, path.c_str(), nullptr)
+                           : write(path, pixels, 4, 4, TETCAST_PIXEL_DEFAULT),
+                     status);
+    if (last_error.find(word) == std::string::npos || last_error.find(path.string()) == std::string::npos)
+      fail_msg("'%s' lacks '%s' or the path", last_error.c_str(), word);
+    assert_int_equal(last_error.find('\n'), std::string::npos);
+  }
+}
+
+static void impossible_targets_are_refused(void **) {
+  clear_folder();
+  expect_failure(folder / "missing" / "a.png", TETCAST_ERROR_IO, "folder does not exist");
+  expect_failure(folder / "a", TETCAST_ERROR_ARGUMENT, "extension");
+  expect_failure(folder / "a.b" / "a", TETCAST_ERROR_ARGUMENT, "extension");
+  expect_failure(folder / "a.", TETCAST_ERROR_ARGUMENT, "extension");
+  for (const char *name : {"a.vtu", "a.null", "a.term", "a.psd", "a.sgi"})
+    expect_failure(folder / name, TETCAST_ERROR_ARGUMENT, "not supported");
+  expect_failure(folder / (std::string(300, 'x') + ".png"), TETCAST_ERROR_IO, "name too long");
+  assert_int_equal(file_count(), 0);
+  fs::create_directory(folder / "d.png");
+  expect_failure(folder / "d.png", TETCAST_ERROR_IO, "directory");
+  assert_int_equal(mkfifo((folder / "pipe.png").c_str(), 0600), 0);
+  expect_failure(folder / "pipe.png", TETCAST_ERROR_IO, "regular file");
+  assert_true(fs::is_fifo(folder / "pipe.png"));
+  assert_int_equal(file_count(), 2);
+  clear_folder();
+  if (geteuid() == 0) // to whom nothing is forbidden
+    return;
+  fs::permissions(folder, fs::perms::owner_read | fs::perms::owner_exec);
+  expect_failure(folder / "a.png", TETCAST_ERROR_IO, "ermission");
+  fs::permissions(folder, fs::perms::owner_all);
+}
+
+static void wrong_descriptions_are_refused(void **) {
+  std::vector<double> pixels = sample_pixels(1, 1);
+  TetcastImageDesc desc;
+  std::memset(&desc, 0, sizeof desc);
+  assert_int_equal(tetcast_image_check(context, (folder / "a.png").c_str(), &desc), TETCAST_ERROR_ARGUMENT);
+  const double bad[4] = {0, 0, NAN, 1};
+  assert_int_equal(write(folder / "a.png", pixels, 1, 1, TETCAST_PIXEL_UINT8, bad), TETCAST_ERROR_ARGUMENT);
+  assert_int_equal(write(folder / "a.png", pixels, 1, 1, TetcastPixelType(7)), TETCAST_ERROR_ARGUMENT);
+  assert_int_equal(tetcast_image_check(context, nullptr, nullptr), TETCAST_ERROR_ARGUMENT);
+  assert_int_equal(tetcast_image_write(context, "a.png", nullptr, nullptr), TETCAST_ERROR_ARGUMENT);
+}
+
+static void check_leaves_nothing(void **) {
+  clear_folder();
+  const fs::path path = folder / "a.png";
+  assert_int_equal(tetcast_image_check(context, path.c_str(), nullptr), TETCAST_OK);
+  assert_int_equal(file_count(), 0);
+  std::ofstream(path) << "old";
+  assert_int_equal(tetcast_image_check(context, path.c_str(), nullptr), TETCAST_OK);
+  assert_string_equal(content(path).c_str(), "old");
+  assert_int_equal(file_count(), 1);
+}
+
+static void links_are_followed(void **) {
+  clear_folder();
+  std::vector<double> pixels = sample_pixels(4, 4);
+  std::ofstream(folder / "real.png") << "old";
+  fs::create_symlink("real.png", folder / "link.png");
+  assert_int_equal(write(folder / "link.png", pixels, 4, 4, TETCAST_PIXEL_DEFAULT), TETCAST_OK);
+  assert_true(fs::is_symlink(folder / "link.png"));
+  assert_int_equal(read_back(folder / "real.png").spec.width, 4);
+}
+
+// A limit on the size of files stands for a full disk: every write beyond it fails, wherever in the file that is.
+static void full_disk_leaves_the_old_file_and_no_word_on_stderr(void **) {
+  const int64_t width = 200, height = 100;
+  std::vector<double> pixels = sample_pixels(width, height);
+  std::signal(SIGXFSZ, SIG_IGN);
+  Listener listener;
+  struct rlimit former;
+  getrlimit(RLIMIT_FSIZE, &former);
+  std::string trouble;
+  for (const char *name :
+       {"a.png", "a.exr", "a.tif", "a.jpg", "a.bmp", "a.tga", "a.webp", "a.jp2", "a.dpx", "a.gif", "a.hdr", "a.ppm"}) {
+    clear_folder();
+    if (write(folder / name, pixels, width, height, TETCAST_PIXEL_DEFAULT) != TETCAST_OK) {
+      trouble += std::string(name) + " cannot be written at all: " + last_error + "; ";
+      continue;
+    }
+    const std::string before = content(folder / name);
+    const size_t whole = before.size();
+    for (const size_t limit :
+         {size_t(0), size_t(1), size_t(100), whole / 4, whole / 2, whole - 4096, whole - 9, whole - 1}) {
+      const struct rlimit tight = {limit, former.rlim_max};
+      setrlimit(RLIMIT_FSIZE, &tight);
+      last_error.clear();
+      const TetcastStatus status = write(folder / name, pixels, width, height, TETCAST_PIXEL_DEFAULT);
+      setrlimit(RLIMIT_FSIZE, &former);
+      if (status != TETCAST_ERROR_IO || last_error.find("too large") == std::string::npos ||
+          content(folder / name) != before || file_count() != 1)
+        trouble += std::string(name) + " at " + std::to_string(limit) + ": status " + std::to_string(status) + " " +
+                   last_error + "; ";
+    }
+  }
+  const long said = listener.stop();
+  if (!trouble.empty())
+    fail_msg("%s", trouble.c_str());
+  assert_int_equal(said, 0);
+}
+
+int main() {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(formats_hold_what_they_should),
+      cmocka_unit_test(jpeg_is_near_a_smooth_picture),
+      cmocka_unit_test(doubles_come_back_bit_for_bit),
+      cmocka_unit_test(tiff_states_how_alpha_is_meant),
+      cmocka_unit_test(rows_may_lie_apart),
+      cmocka_unit_test(not_a_number_is_written_without_a_crash),
+      cmocka_unit_test(same_picture_same_file),
+      cmocka_unit_test(impossible_targets_are_refused),
+      cmocka_unit_test(wrong_descriptions_are_refused),
+      cmocka_unit_test(check_leaves_nothing),
+      cmocka_unit_test(links_are_followed),
+      cmocka_unit_test(full_disk_leaves_the_old_file_and_no_word_on_stderr),
+  };
+  return cmocka_run_group_tests_name("image", tests, setup, teardown);
+}

@@ -1,0 +1,23 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+# core_only.sh SOURCE WORK: the core configures, builds, passes its tests and installs with no adapter and no command.
+# Environment: CC, CXX.
+set -eu
+source=$1 work=$2
+rm -rf "$work"
+mkdir -p "$work"
+
+# quietly COMMAND…: its output is shown only when it fails.
+quietly() {
+  "$@" >"$work/log" 2>&1 || {
+    cat "$work/log" >&2
+    echo "core only: failed: $*" >&2
+    exit 1
+  }
+}
+
+quietly cmake -S "$source" -B "$work/build" -DCMAKE_BUILD_TYPE=Release -DTETCAST_WERROR=ON -DTETCAST_TEST_CORE_ONLY=OFF \
+  -DTETCAST_WITH_VTK=OFF -DTETCAST_WITH_TETGEN=OFF -DTETCAST_WITH_OPENIMAGEIO=OFF -DTETCAST_WITH_CLI=OFF
+quietly cmake --build "$work/build" --parallel 2
+quietly ctest --test-dir "$work/build" --output-on-failure --no-tests=error
+tail -n 4 "$work/log"
