@@ -1,1 +1,351 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* The public boundary: checks arguments, nothing else. */
+#include <tetcast/tetcast.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/base.h"
+#include "mesh/mesh.h"
+#include "optics/transfer.h"
+#include "render/render.h"
+#include "traverse/volume.h"
+
+#define ARGUMENT(context, ...) tc_error(context, TETCAST_ERROR_ARGUMENT, __VA_ARGS__)
+
+/* The checks that every function which makes something begins with. */
+#define CHECK_OUT(context, out)                                            \
+  do {                                                                     \
+    if (!(out)) return ARGUMENT(context, "%s: no place for the result", __func__); \
+    *(out) = NULL;                                                         \
+  } while (0)
+#define CHECK_GIVEN(context, pointer) \
+  do {                                \
+    if (!(pointer)) return ARGUMENT(context, "%s: " #pointer " is NULL", __func__); \
+  } while (0)
+#define CHECK_DESC(context, desc)                                                                                  \
+  do {                                                                                                             \
+    CHECK_GIVEN(context, desc);                                                                                    \
+    if ((desc)->cookie != TC_COOKIE) {                                                                             \
+      return ARGUMENT(context, "%s: the description was not made with its ..._default() function", __func__); \
+    }                                                                                                              \
+  } while (0)
+
+/* ── version, status ── */
+
+const char *tetcast_version_string(void) { return TETCAST_VERSION_STRING; }
+
+const char *tetcast_status_string(TetcastStatus status) {
+  switch (status) {
+  case TETCAST_OK: return "no error";
+  case TETCAST_ERROR_ARGUMENT: return "invalid argument";
+  case TETCAST_ERROR_MEMORY: return "out of memory";
+  case TETCAST_ERROR_DATA: return "unusable data";
+  case TETCAST_ERROR_LIMIT: return "too large";
+  case TETCAST_ERROR_IO: return "input or output failed";
+  case TETCAST_ERROR_UNSUPPORTED: return "not supported";
+  case TETCAST_ERROR_CANCELLED: return "cancelled";
+  case TETCAST_ERROR_EMBREE: return "error in Embree";
+  case TETCAST_STATUS_COUNT: break;
+  }
+  return "unknown status";
+}
+
+/* ── context ── */
+
+TetcastContextDesc tetcast_context_desc_default(void) { return (TetcastContextDesc){.cookie = TC_COOKIE}; }
+
+TetcastStatus tetcast_context_create(const TetcastContextDesc *desc, TetcastContext **context) {
+  const TetcastContextDesc defaults = tetcast_context_desc_default();
+  if (!desc) desc = &defaults;
+  if (!context) return TETCAST_ERROR_ARGUMENT;
+  *context = NULL;
+  if (desc->cookie != TC_COOKIE || desc->threads < 0 || desc->threads > 4096 || !desc->allocate != !desc->release) {
+    return TETCAST_ERROR_ARGUMENT;
+  }
+  return tc_context_create(desc, context);
+}
+
+void tetcast_context_destroy(TetcastContext **context) {
+  if (!context) return;
+  tc_context_destroy(*context);
+  *context = NULL;
+}
+
+TetcastStatus tetcast_context_set_threads(TetcastContext *context, int threads) {
+  CHECK_GIVEN(context, context);
+  if (threads < 0 || threads > 4096) return ARGUMENT(context, "%d threads: must be in [0, 4096]", threads);
+  atomic_store(&context->threads, threads);
+  return TETCAST_OK;
+}
+
+int tetcast_context_threads(const TetcastContext *context) { return context ? tc_context_threads(context) : 1; }
+
+TetcastStatus tetcast_context_error(TetcastContext *context, TetcastStatus status, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  tc_message_v(context, TETCAST_SEVERITY_ERROR, format, arguments);
+  va_end(arguments);
+  return status;
+}
+
+void tetcast_context_message(TetcastContext *context, TetcastSeverity severity, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  tc_message_v(context, severity, format, arguments);
+  va_end(arguments);
+}
+
+/* ── mesh, field ── */
+
+static TetcastStatus check_array(TetcastContext *context, const TetcastArray *array, const char *what) {
+  if (array->count < 0) return ARGUMENT(context, "%s: a count of %" PRId64, what, array->count);
+  if (array->count > 0 && !array->data) return ARGUMENT(context, "%s: no data", what);
+  return TETCAST_OK;
+}
+
+TetcastMeshDesc tetcast_mesh_desc_default(void) { return (TetcastMeshDesc){.cookie = TC_COOKIE}; }
+
+TetcastStatus tetcast_mesh_create(TetcastContext *context, const TetcastMeshDesc *desc, TetcastMesh **mesh) {
+  CHECK_OUT(context, mesh);
+  CHECK_GIVEN(context, context);
+  CHECK_DESC(context, desc);
+  TetcastStatus status = check_array(context, &desc->vertices, "vertices");
+  if (!status) status = check_array(context, &desc->tetrahedra, "tetrahedra");
+  if (status) return status;
+  if (desc->vertices.count > 0 && !tc_type_is_float(desc->vertices.type)) {
+    return ARGUMENT(context, "vertices must be float32 or float64");
+  }
+  if (desc->tetrahedra.count > 0 && (tc_type_size(desc->tetrahedra.type) == 0 || tc_type_is_float(desc->tetrahedra.type))) {
+    return ARGUMENT(context, "tetrahedra must be of an integer type");
+  }
+  return tc_mesh_create(context, desc, mesh);
+}
+
+void tetcast_mesh_destroy(TetcastMesh **mesh) {
+  if (!mesh) return;
+  tc_mesh_destroy(*mesh);
+  *mesh = NULL;
+}
+
+int64_t tetcast_mesh_vertex_count(const TetcastMesh *mesh) { return mesh->vertices.count; }
+int64_t tetcast_mesh_tetrahedron_count(const TetcastMesh *mesh) { return mesh->tetrahedra.count; }
+TetcastArray tetcast_mesh_vertices(const TetcastMesh *mesh) { return mesh->vertices; }
+TetcastArray tetcast_mesh_tetrahedra(const TetcastMesh *mesh) { return mesh->tetrahedra; }
+void tetcast_mesh_vertex(const TetcastMesh *mesh, int64_t i, double position[3]) { tc_mesh_vertex(mesh, i, position); }
+void tetcast_mesh_tetrahedron(const TetcastMesh *mesh, int64_t i, int64_t indices[4]) { tc_mesh_tetrahedron(mesh, i, indices); }
+void tetcast_mesh_bounds(const TetcastMesh *mesh, double bounds[6]) { memcpy(bounds, mesh->bounds, sizeof mesh->bounds); }
+
+TetcastStatus tetcast_mesh_health(TetcastContext *context, const TetcastMesh *mesh, TetcastMeshHealth *health) {
+  CHECK_GIVEN(context, context);
+  CHECK_GIVEN(context, mesh);
+  CHECK_GIVEN(context, health);
+  return tc_mesh_health(context, mesh, health);
+}
+
+TetcastFieldDesc tetcast_field_desc_default(void) { return (TetcastFieldDesc){.cookie = TC_COOKIE}; }
+
+TetcastStatus tetcast_field_create(TetcastContext *context, const TetcastFieldDesc *desc, TetcastField **field) {
+  CHECK_OUT(context, field);
+  CHECK_GIVEN(context, context);
+  CHECK_DESC(context, desc);
+  const TetcastStatus status = check_array(context, &desc->values, "field values");
+  if (status) return status;
+  if (desc->values.count > 0 && tc_type_size(desc->values.type) == 0) return ARGUMENT(context, "field values need a type");
+  if (desc->association != TETCAST_POINT && desc->association != TETCAST_CELL) {
+    return ARGUMENT(context, "a field belongs to points or to cells");
+  }
+  return tc_field_create(context, desc, field);
+}
+
+void tetcast_field_destroy(TetcastField **field) {
+  if (!field) return;
+  tc_field_destroy(*field);
+  *field = NULL;
+}
+
+TetcastAssociation tetcast_field_association(const TetcastField *field) { return field->association; }
+TetcastArray tetcast_field_values(const TetcastField *field) { return field->values; }
+double tetcast_field_value(const TetcastField *field, int64_t i) {
+  return tc_array_double(&field->values, field->values.stride, i, 0);
+}
+void tetcast_field_range(const TetcastField *field, double range[2], int64_t *nonfinite_count) {
+  tc_field_range(field, range, nonfinite_count);
+}
+
+/* ── volume ── */
+
+TetcastVolumeDesc tetcast_volume_desc_default(void) { return (TetcastVolumeDesc){.cookie = TC_COOKIE}; }
+
+TetcastStatus tetcast_volume_create(TetcastContext *context, const TetcastMesh *mesh, const TetcastVolumeDesc *desc,
+                                    TetcastVolume **volume) {
+  const TetcastVolumeDesc defaults = tetcast_volume_desc_default();
+  if (!desc) desc = &defaults;
+  CHECK_OUT(context, volume);
+  CHECK_GIVEN(context, context);
+  CHECK_GIVEN(context, mesh);
+  CHECK_DESC(context, desc);
+  if (desc->traversal != TETCAST_TRAVERSAL_SHELL && desc->traversal != TETCAST_TRAVERSAL_FACES) {
+    return ARGUMENT(context, "unknown traversal %d", (int)desc->traversal);
+  }
+  return tc_volume_create(context, mesh, desc, volume);
+}
+
+void tetcast_volume_destroy(TetcastVolume **volume) {
+  if (!volume) return;
+  tc_volume_destroy(*volume);
+  *volume = NULL;
+}
+
+TetcastStatus tetcast_volume_set_field(TetcastVolume *volume, const TetcastField *field) {
+  if (!volume) return TETCAST_ERROR_ARGUMENT;
+  CHECK_GIVEN(volume->context, field);
+  return tc_volume_set_field(volume, field);
+}
+
+void tetcast_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info) { tc_volume_info(volume, info); }
+
+/* ── transfer function ── */
+
+TetcastTransferFunctionDesc tetcast_transfer_function_desc_default(void) {
+  return (TetcastTransferFunctionDesc){.cookie = TC_COOKIE, .unit_distance = 1};
+}
+
+TetcastStatus tetcast_transfer_function_create(TetcastContext *context, const TetcastTransferFunctionDesc *desc,
+                                               TetcastTransferFunction **transfer_function) {
+  CHECK_OUT(context, transfer_function);
+  CHECK_GIVEN(context, context);
+  CHECK_DESC(context, desc);
+  if ((unsigned)desc->opacity_model > TETCAST_OPACITY_OSPRAY) {
+    return ARGUMENT(context, "unknown opacity model %d", (int)desc->opacity_model);
+  }
+  return tc_transfer_create(context, desc, transfer_function);
+}
+
+TetcastStatus tetcast_transfer_function_create_preset(TetcastContext *context, const TetcastVolume *volume, const char *name,
+                                                      double low, double high, TetcastTransferFunction **transfer_function) {
+  CHECK_OUT(context, transfer_function);
+  CHECK_GIVEN(context, context);
+  CHECK_GIVEN(context, volume);
+  CHECK_GIVEN(context, name);
+  if (!volume->has_field) return ARGUMENT(context, "a preset needs a volume with a field");
+  if (!isfinite(low) || !isfinite(high) || low > high) return ARGUMENT(context, "range %g to %g of a preset", low, high);
+  double extinction;
+  const TetcastStatus status = tc_preset_extinction(context, volume, low, high, &extinction);
+  return status ? status : tc_transfer_create_preset(context, name, low, high, extinction, transfer_function);
+}
+
+const char *tetcast_preset_name(int i) { return tc_preset_name(i); }
+
+void tetcast_transfer_function_destroy(TetcastTransferFunction **transfer_function) {
+  if (!transfer_function) return;
+  tc_transfer_destroy(*transfer_function);
+  *transfer_function = NULL;
+}
+
+const double *tetcast_transfer_function_color(const TetcastTransferFunction *transfer_function, int64_t *count) {
+  if (count) *count = transfer_function->color_count;
+  return transfer_function->color;
+}
+
+const double *tetcast_transfer_function_extinction(const TetcastTransferFunction *transfer_function, int64_t *count) {
+  if (count) *count = transfer_function->extinction_count;
+  return transfer_function->extinction;
+}
+
+/* ── camera, frame ── */
+
+TetcastCamera tetcast_camera_default(const double bounds[6], double aspect) { return tc_camera_default(bounds, aspect); }
+
+TetcastFrameDesc tetcast_frame_desc_default(void) {
+  return (TetcastFrameDesc){.cookie = TC_COOKIE, .type = TETCAST_TYPE_FLOAT64};
+}
+
+TetcastStatus tetcast_frame_create(TetcastContext *context, const TetcastFrameDesc *desc, TetcastFrame **frame) {
+  const int64_t largest = INT64_C(1) << 20;
+  CHECK_OUT(context, frame);
+  CHECK_GIVEN(context, context);
+  CHECK_DESC(context, desc);
+  if (desc->width < 1 || desc->height < 1 || desc->width > largest || desc->height > largest) {
+    return ARGUMENT(context, "a frame of %" PRId64 " × %" PRId64 " pixels: each must be in [1, %" PRId64 "]", desc->width, desc->height,
+                    largest);
+  }
+  if (!tc_type_is_float(desc->type)) return ARGUMENT(context, "a frame's type must be float32 or float64");
+  const int64_t row = desc->width * 4 * (int64_t)tc_type_size(desc->type);
+  if (desc->pixels && desc->row_stride != 0 && desc->row_stride < row && desc->row_stride > -row) {
+    return ARGUMENT(context, "a row stride of %" PRId64 " bytes, but a row has %" PRId64, desc->row_stride, row);
+  }
+  return tc_frame_create(context, desc, frame);
+}
+
+void tetcast_frame_destroy(TetcastFrame **frame) {
+  if (!frame) return;
+  tc_frame_destroy(*frame);
+  *frame = NULL;
+}
+
+int64_t tetcast_frame_width(const TetcastFrame *frame) { return frame->width; }
+int64_t tetcast_frame_height(const TetcastFrame *frame) { return frame->height; }
+TetcastType tetcast_frame_type(const TetcastFrame *frame) { return frame->type; }
+const void *tetcast_frame_pixels(const TetcastFrame *frame) { return frame->pixels; }
+int64_t tetcast_frame_row_stride(const TetcastFrame *frame) { return frame->row_stride; }
+
+/* ── scene ── */
+
+TetcastStatus tetcast_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **scene) {
+  CHECK_OUT(context, scene);
+  CHECK_GIVEN(context, context);
+  CHECK_GIVEN(context, volume);
+  return tc_scene_create(context, volume, scene);
+}
+
+void tetcast_scene_destroy(TetcastScene **scene) {
+  if (!scene) return;
+  tc_scene_destroy(*scene);
+  *scene = NULL;
+}
+
+TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer_function) {
+  if (!scene) return TETCAST_ERROR_ARGUMENT;
+  CHECK_GIVEN(scene->context, transfer_function);
+  return tc_scene_set_transfer_function(scene, transfer_function);
+}
+
+TetcastRenderDesc tetcast_render_desc_default(void) { return (TetcastRenderDesc){.cookie = TC_COOKIE, .samples = 1}; }
+
+static TetcastStatus check_camera(TetcastContext *context, const TetcastCamera *camera) {
+  for (int k = 0; k < 3; ++k) {
+    if (!isfinite(camera->eye[k]) || !isfinite(camera->target[k]) || !isfinite(camera->up[k])) {
+      return ARGUMENT(context, "camera: a coordinate of eye, target or up is not finite");
+    }
+  }
+  if (camera->projection == TETCAST_PERSPECTIVE) {
+    if (!(camera->fovy > 0 && camera->fovy < 180)) {
+      return ARGUMENT(context, "camera: a vertical angle of %g degrees, must be in (0, 180)", camera->fovy);
+    }
+  } else if (camera->projection == TETCAST_ORTHOGRAPHIC) {
+    if (!(camera->height > 0) || !isfinite(camera->height)) {
+      return ARGUMENT(context, "camera: a height of %g, must be positive", camera->height);
+    }
+  } else {
+    return ARGUMENT(context, "camera: unknown projection %d", (int)camera->projection);
+  }
+  return TETCAST_OK;
+}
+
+TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
+                                   TetcastFrame *frame, TetcastRenderStats *stats) {
+  const TetcastRenderDesc defaults = tetcast_render_desc_default();
+  if (!desc) desc = &defaults;
+  if (!scene) return TETCAST_ERROR_ARGUMENT;
+  TetcastContext *context = scene->context;
+  CHECK_GIVEN(context, camera);
+  CHECK_DESC(context, desc);
+  CHECK_GIVEN(context, frame);
+  if (desc->samples < 1 || desc->samples > 65536) return ARGUMENT(context, "%d samples: must be in [1, 65536]", desc->samples);
+  if (!scene->volume->has_field) return ARGUMENT(context, "the volume has no field yet");
+  if (!scene->transfer) return ARGUMENT(context, "the scene has no transfer function yet");
+  const TetcastStatus status = check_camera(context, camera);
+  return status ? status : tc_scene_render(scene, camera, desc, frame, stats);
+}

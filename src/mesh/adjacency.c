@@ -241,14 +241,16 @@ static TetcastStatus run(const TetcastMesh *mesh, Build *build, TcAdjacency *res
   return TETCAST_OK;
 }
 
-TetcastStatus tc_adjacency_build(const TetcastMesh *mesh, const TetcastProgress *progress, TcAdjacency *result) {
+TetcastStatus tc_adjacency_build(const TetcastMesh *mesh, bool keep_vertices, const TetcastProgress *progress,
+                                 TcAdjacency *result) {
   memset(result, 0, sizeof *result);
   result->context = mesh->context;
   Build build;
   memset(&build, 0, sizeof build);
   build.context = mesh->context;
   const TetcastStatus status = run(mesh, &build, result, progress);
-  tc_release(build.context, build.sorted);
+  if (keep_vertices) result->vertices = build.sorted;
+  else tc_release(build.context, build.sorted);
   tc_release(build.context, build.bucket);
   tc_release(build.context, build.faces);
   tc_release(build.context, (void *)build.duplicate);
@@ -256,7 +258,16 @@ TetcastStatus tc_adjacency_build(const TetcastMesh *mesh, const TetcastProgress 
   return status;
 }
 
+void tc_adjacency_drop_links(TcAdjacency *adjacency) {
+  tc_release(adjacency->context, adjacency->cells);
+  tc_release(adjacency->context, adjacency->shell);
+  adjacency->cells = NULL;
+  adjacency->shell = NULL;
+  adjacency->shell_count = 0;
+}
+
 void tc_adjacency_clear(TcAdjacency *adjacency) {
+  tc_release(adjacency->context, adjacency->vertices);
   tc_release(adjacency->context, adjacency->cells);
   tc_release(adjacency->context, adjacency->shell);
   tc_release(adjacency->context, adjacency->source);

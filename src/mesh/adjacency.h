@@ -25,6 +25,7 @@ typedef struct TcAdjacency {
   int64_t cell_count, shell_count;
   TcCell *cells;           /* [cell_count] */
   TcShellFace *shell;      /* [shell_count] */
+  uint32_t (*vertices)[4]; /* [cell_count], ascending, if they were asked for */
   uint32_t *source;        /* [cell_count]: the mesh's cell; NULL: the same number */
   int64_t collapsed;       /* left out: a vertex twice */
   int64_t duplicates;      /* left out: the four vertices of an earlier cell */
@@ -33,7 +34,10 @@ typedef struct TcAdjacency {
 
 /* Which cells meet at which faces. Time O(cells · log valence), working memory about 52 bytes per cell and 8 per vertex
  * beyond the result. Cleared on error. */
-TetcastStatus tc_adjacency_build(const TetcastMesh *mesh, const TetcastProgress *progress, TcAdjacency *adjacency);
+TetcastStatus tc_adjacency_build(const TetcastMesh *mesh, bool keep_vertices, const TetcastProgress *progress,
+                                 TcAdjacency *adjacency);
+/* Frees cells and shell, leaving the vertices. */
+void tc_adjacency_drop_links(TcAdjacency *adjacency);
 void tc_adjacency_clear(TcAdjacency *adjacency);
 
 /* The four vertices of a cell in ascending order. */

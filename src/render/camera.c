@@ -1,1 +1,85 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#include <math.h>
+#include <string.h>
+
+#include "render/render.h"
+
+static const double DEGREE = 0.017453292519943295;
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static void cross(const double a[3], const double b[3], double c[3]) {
+  c[0] = a[1] * b[2] - a[2] * b[1];
+  c[1] = a[2] * b[0] - a[0] * b[2];
+  c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Makes v a unit vector; false if it has no direction. Scaled first, so that no unit overflows. */
+static bool normalize(double v[3]) {
+  const double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+  if (!(largest > 0) || !isfinite(largest)) return false;
+  int exponent;
+  frexp(largest, &exponent);
+  for (int k = 0; k < 3; ++k) v[k] = ldexp(v[k], -exponent);
+  const double length = sqrt(dot(v, v));
+  for (int k = 0; k < 3; ++k) v[k] /= length;
+  return true;
+}
+
+TetcastCamera tc_camera_default(const double bounds[6], double aspect) {
+  TetcastCamera camera = {.up = {0, 1, 0}, .projection = TETCAST_PERSPECTIVE, .fovy = 30};
+  double half[3];
+  for (int k = 0; k < 3; ++k) {
+    camera.target[k] = 0.5 * bounds[2 * k] + 0.5 * bounds[2 * k + 1];
+    half[k] = 0.5 * bounds[2 * k + 1] - 0.5 * bounds[2 * k];
+  }
+  double radius = hypot(hypot(half[0], half[1]), half[2]);
+  if (!(radius > 0)) radius = 0.5; /* a point: any distance will do */
+  double half_angle = 15 * DEGREE;
+  if (aspect > 0 && aspect < 1) half_angle = atan(tan(half_angle) * aspect);
+  memcpy(camera.eye, camera.target, sizeof camera.eye);
+  camera.eye[2] += radius / sin(half_angle);
+  camera.height = aspect > 0 && aspect < 1 ? 2 * radius / aspect : 2 * radius;
+  return camera;
+}
+
+TetcastStatus tc_view_create(TetcastContext *context, const TetcastCamera *camera, const TetcastVolume *volume, double aspect,
+                             TcView *view) {
+  view->orthographic = camera->projection == TETCAST_ORTHOGRAPHIC;
+  for (int k = 0; k < 3; ++k) {
+    view->eye[k] = ldexp(camera->eye[k], -volume->exponent);
+    view->forward[k] = 0.5 * camera->target[k] - 0.5 * camera->eye[k];
+    view->up[k] = camera->up[k];
+    /* Squares of distances must not overflow. */
+    if (!(fabs(view->eye[k]) < 0x1p500)) {
+      return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: the eye is too far from the mesh: %g", camera->eye[k]);
+    }
+  }
+  if (!normalize(view->forward)) {
+    return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: eye and target are the same point (%g, %g, %g)", camera->eye[0],
+                    camera->eye[1], camera->eye[2]);
+  }
+  if (normalize(view->up)) cross(view->forward, view->up, view->right);
+  if (!normalize(view->up) || dot(view->right, view->right) < 1e-24 || !normalize(view->right)) {
+    return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: up (%g, %g, %g) is parallel to the direction of view", camera->up[0],
+                    camera->up[1], camera->up[2]);
+  }
+  cross(view->right, view->forward, view->up);
+  const double half = view->orthographic ? ldexp(0.5 * camera->height, -volume->exponent) : tan(0.5 * camera->fovy * DEGREE);
+  for (int k = 0; k < 3; ++k) {
+    view->right[k] *= half * aspect;
+    view->up[k] *= half;
+  }
+  return TETCAST_OK;
+}
+
+void tc_view_ray(const TcView *view, double u, double v, double eye[3], double direction[3]) {
+  for (int k = 0; k < 3; ++k) {
+    const double offset = u * view->right[k] + v * view->up[k];
+    eye[k] = view->orthographic ? view->eye[k] + offset : view->eye[k];
+    direction[k] = view->orthographic ? view->forward[k] : view->forward[k] + offset;
+  }
+  if (view->orthographic) return;
+  const double length = sqrt(dot(direction, direction));
+  for (int k = 0; k < 3; ++k) direction[k] /= length;
+}

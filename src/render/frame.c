@@ -1,1 +1,43 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#include <string.h>
+
+#include "render/render.h"
+
+TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *desc, TetcastFrame **out) {
+  TetcastFrame *frame;
+  if (!tc_allocate_array(context, (void **)&frame, 1, sizeof *frame, "frame")) return TETCAST_ERROR_MEMORY;
+  memset(frame, 0, sizeof *frame);
+  frame->context = context;
+  frame->width = desc->width;
+  frame->height = desc->height;
+  frame->type = desc->type;
+  const int64_t row = desc->width * 4 * (int64_t)tc_type_size(desc->type);
+  frame->row_stride = desc->pixels && desc->row_stride ? desc->row_stride : row;
+  frame->pixels = desc->pixels;
+  if (!desc->pixels) {
+    if (!tc_allocate_array(context, &frame->memory, desc->height, (size_t)row, "pixels")) {
+      tc_frame_destroy(frame);
+      return TETCAST_ERROR_MEMORY;
+    }
+    memset(frame->memory, 0, (size_t)(row * desc->height));
+    frame->pixels = frame->memory;
+  }
+  *out = frame;
+  return TETCAST_OK;
+}
+
+void tc_frame_destroy(TetcastFrame *frame) {
+  if (!frame) return;
+  tc_release(frame->context, frame->memory);
+  tc_release(frame->context, frame);
+}
+
+void tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, const double rgba[4]) {
+  char *row = (char *)frame->pixels + y * frame->row_stride;
+  if (frame->type == TETCAST_TYPE_FLOAT64) {
+    memcpy(row + x * 4 * (int64_t)sizeof(double), rgba, 4 * sizeof(double));
+  } else {
+    const float pixel[4] = {(float)rgba[0], (float)rgba[1], (float)rgba[2], (float)rgba[3]};
+    memcpy(row + x * 4 * (int64_t)sizeof(float), pixel, sizeof pixel);
+  }
+}

@@ -1,1 +1,100 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* The scalar kernel: one ray at a time, in double precision. It is the specification that faster kernels are tested against. */
+#include <math.h>
+
+#include "render/render.h"
+#include "traverse/walk.h"
+
+/* Adds the part from z0 to z1 of a cell, over which a point field goes from s0 to s1. */
+static void add_part(const TetcastVolume *volume, const TcPieces *pieces, uint32_t cell, double z0, double z1, double s0, double s1,
+                     TcWorker *worker, TcLight *light) {
+  ++worker->segments;
+  if (volume->association == TETCAST_CELL) {
+    const double s = volume->cell_values[cell];
+    if (!isnan(s)) tc_light_add_constant(light, pieces, z1 - z0, s);
+  } else if (!isnan(s0) && !isnan(s1)) { /* two faces have all four vertices of the cell between them: its NaN shows */
+    tc_light_add(light, pieces, z1 - z0, s0, s1);
+  }
+}
+
+/* Adds what of a segment lies beyond *seen, the depth up to which the path has been seen. Rounding, or a cell that is turned inside
+ * out, can make a face's depth less than that of the face before: such a segment counts for nothing, and the next one for what
+ * it has beyond. So lengths along a path add up to its last depth minus its first, whatever happens in between. */
+static void add_segment(const TetcastVolume *volume, const TcPieces *pieces, uint32_t cell, double z0, double z1, double s0,
+                        double s1, double *seen, TcWorker *worker, TcLight *light) {
+  if (!(z1 > *seen)) return;
+  if (z0 < *seen) {
+    const double w = (*seen - z0) / (z1 - z0);
+    s0 = (1 - w) * s0 + w * s1;
+    z0 = *seen;
+  }
+  add_part(volume, pieces, cell, z0, z1, s0, s1, worker, light);
+  *seen = z1;
+}
+
+/* Each path once, from the end that comes first. */
+static void cast_shell(const TetcastVolume *volume, const TcPieces *pieces, const TcRay *ray, TcWorker *worker, TcLight *light) {
+  TcSpans *faces = &worker->spans;
+  for (int64_t i = 0; i < faces->count; ++i) faces->data[i].done = false;
+  for (int64_t i = 0; i < faces->count; ++i) {
+    if (faces->data[i].done) continue;
+    TcWalk walk;
+    tc_walk_begin(volume, ray, faces->data[i].id, &walk);
+    double seen = ray->near > walk.z ? ray->near : walk.z;
+    do {
+      const double z = walk.z, s = walk.s;
+      const uint32_t cell = walk.cell;
+      if (!tc_walk_step(volume, ray, &walk)) {
+        ++worker->lost;
+        return;
+      }
+      add_segment(volume, pieces, cell, z, walk.z, s, walk.s, &seen, worker, light);
+      if (tc_light_opaque(light)) return;
+    } while (!(walk.cell & TC_SHELL));
+    for (int64_t j = i + 1; j < faces->count; ++j) {
+      if (faces->data[j].id == (walk.cell & ~TC_SHELL)) faces->data[j].done = true;
+    }
+  }
+}
+
+static void cast_faces(const TetcastVolume *volume, const TcPieces *pieces, const TcRay *ray, TcWorker *worker, TcLight *light) {
+  for (int64_t i = 0; i < worker->spans.count && !tc_light_opaque(light); ++i) {
+    const TcSpan *span = &worker->spans.data[i];
+    double seen = ray->near > span->begin ? ray->near : span->begin;
+    add_segment(volume, pieces, span->id, span->begin, span->end, span->s0, span->s1, &seen, worker, light);
+  }
+}
+
+bool tc_cast(const TetcastVolume *volume, const TcPieces *pieces, const double eye[3], const double direction[3], TcWorker *worker,
+             TcLight *light) {
+  TcRay ray;
+  *light = tc_light_begin();
+  if (!tc_ray_begin(volume, eye, direction, &ray)) return true;
+  if (!tc_trace(volume, &ray, &worker->spans)) return false;
+  if (volume->traversal == TETCAST_TRAVERSAL_SHELL) cast_shell(volume, pieces, &ray, worker, light);
+  else cast_faces(volume, pieces, &ray, worker, light);
+  return true;
+}
+
+bool tc_kernel_scalar(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker) {
+  const int samples = job->samples_x * job->samples_y;
+  const double columns = (double)(job->width * job->samples_x), rows = (double)(job->height * job->samples_y);
+  for (int64_t y = y0; y < y1; ++y) {
+    for (int64_t x = x0; x < x1; ++x) {
+      double sum[4] = {0, 0, 0, 0};
+      for (int i = 0; i < samples; ++i) {
+        const double column = (double)(x * job->samples_x + i % job->samples_x) + 0.5;
+        const double row = (double)(y * job->samples_y + i / job->samples_x) + 0.5;
+        double eye[3], direction[3], rgba[4];
+        TcLight light;
+        tc_view_ray(&job->view, 2 * column / columns - 1, 1 - 2 * row / rows, eye, direction);
+        if (!tc_cast(job->volume, job->pieces, eye, direction, worker, &light)) return false;
+        tc_light_end(&light, rgba);
+        for (int k = 0; k < 4; ++k) sum[k] += rgba[k];
+      }
+      for (int k = 0; k < 4; ++k) sum[k] /= samples;
+      tc_frame_store(job->frame, x, y, sum);
+    }
+  }
+  return true;
+}

@@ -1,1 +1,102 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#include <math.h>
+#include <string.h>
+
+#include "base/parallel.h"
+#include "render/render.h"
+
+TetcastStatus tc_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **out) {
+  TetcastScene *scene;
+  if (!tc_allocate_array(context, (void **)&scene, 1, sizeof *scene, "scene")) return TETCAST_ERROR_MEMORY;
+  *scene = (TetcastScene){.context = context, .volume = volume};
+  *out = scene;
+  return TETCAST_OK;
+}
+
+void tc_scene_destroy(TetcastScene *scene) {
+  if (!scene) return;
+  tc_transfer_destroy(scene->transfer);
+  tc_release(scene->context, scene);
+}
+
+TetcastStatus tc_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer) {
+  TetcastTransferFunction *copy;
+  const TetcastStatus status = tc_transfer_copy(scene->context, transfer, &copy);
+  if (status) return status;
+  /* Extinction per scaled length, so that depths are right for any unit: a power of two changes no bit. */
+  for (int64_t i = 0; i <= copy->pieces.count; ++i) {
+    copy->piece[i].at_low.extinction = ldexp(copy->piece[i].at_low.extinction, scene->volume->exponent);
+    copy->piece[i].at_high.extinction = ldexp(copy->piece[i].at_high.extinction, scene->volume->exponent);
+  }
+  tc_transfer_destroy(scene->transfer);
+  scene->transfer = copy;
+  return TETCAST_OK;
+}
+
+/* ── a frame ── */
+
+enum { TILE = 16 };
+
+typedef struct Render {
+  TcJob job;
+  TcKernel *kernel;
+  TcWorker *workers;
+  int64_t tiles_x;
+} Render;
+
+static bool render_tiles(void *data, int64_t begin, int64_t end, int worker) {
+  Render *render = data;
+  const TcJob *job = &render->job;
+  for (int64_t i = begin; i < end; ++i) {
+    const int64_t x0 = i % render->tiles_x * TILE, y0 = i / render->tiles_x * TILE;
+    const int64_t x1 = x0 + TILE < job->width ? x0 + TILE : job->width, y1 = y0 + TILE < job->height ? y0 + TILE : job->height;
+    if (!render->kernel(job, x0, y0, x1, y1, &render->workers[worker])) return false;
+  }
+  return true;
+}
+
+/* A grid of exactly `samples`, as near to square as its divisors allow, not higher than wide. */
+static void sample_grid(int samples, int *x, int *y) {
+  *y = 1;
+  for (int i = 2; i * i <= samples; ++i) {
+    if (samples % i == 0) *y = i;
+  }
+  *x = samples / *y;
+}
+
+TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
+                              TetcastFrame *frame, TetcastRenderStats *stats) {
+  TetcastContext *context = scene->context;
+  Render render = {.kernel = tc_kernel_scalar};
+  TcJob *job = &render.job;
+  job->volume = scene->volume;
+  job->pieces = &scene->transfer->pieces;
+  job->width = frame->width;
+  job->height = frame->height;
+  job->frame = frame;
+  sample_grid(desc->samples, &job->samples_x, &job->samples_y);
+  TetcastStatus status =
+    tc_view_create(context, camera, scene->volume, (double)frame->width / (double)frame->height, &job->view);
+  if (status) return status;
+
+  const int threads = tc_context_threads(context);
+  if (!tc_allocate_array(context, (void **)&render.workers, threads, sizeof *render.workers, "workers")) return TETCAST_ERROR_MEMORY;
+  memset(render.workers, 0, (size_t)threads * sizeof *render.workers);
+  for (int i = 0; i < threads; ++i) render.workers[i].spans.context = context;
+  render.tiles_x = (frame->width + TILE - 1) / TILE;
+  const int64_t tiles = render.tiles_x * ((frame->height + TILE - 1) / TILE);
+  status = tc_parallel_for(context, tiles, 1, render_tiles, &render, &desc->progress);
+
+  TetcastRenderStats sum = {
+    .rays = frame->width * frame->height * desc->samples, .isa = "scalar", .precision = "double"};
+  for (int i = 0; i < threads; ++i) {
+    TcWorker *worker = &render.workers[i];
+    if (worker->spans.out_of_memory) status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: hits of a ray");
+    sum.segments += worker->segments;
+    sum.lost += worker->lost;
+    tc_spans_clear(&worker->spans);
+  }
+  tc_release(context, render.workers);
+  if (!status && stats) *stats = sum;
+  return status;
+}

@@ -28,7 +28,7 @@ bool tc_ray_begin(const TetcastVolume *volume, const double eye[3], const double
 }
 
 /* Called when the rounded products of a × b are equal. Either they differ by their rounding errors, which fma gives exactly; or the ray
- * passes exactly through the line ab. Then it is thought moved by (δ, δ²), and vertex i by (0, δ^(3+i)) with an infinitesimal δ
+ * passes exactly through the line ab. Then it is thought moved by (δ, δ²), and vertex i by (0, i δ³) with an infinitesimal δ
  * (Edelsbrunner & Mücke, Simulation of simplicity, 1990):
  *
  *     (a − δ) × (b − δ) = a × b − δ (b.y − a.y) + δ² (b.x − a.x) + …

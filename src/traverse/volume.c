@@ -1,1 +1,214 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#include "traverse/volume.h"
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+#include "traverse/rayspace.h"
+
+static bool shell_only(const TetcastVolume *volume) { return volume->traversal == TETCAST_TRAVERSAL_SHELL; }
+
+static void grow(const TetcastVolume *volume, uint32_t vertex, double low[3], double high[3]) {
+  double v[4];
+  tc_volume_vertex(volume, vertex, v);
+  for (int k = 0; k < 3; ++k) {
+    low[k] = v[k] < low[k] ? v[k] : low[k];
+    high[k] = v[k] > high[k] ? v[k] : high[k];
+  }
+}
+
+/* Bounds of shell face or cell i, for Embree. */
+static void primitive_bounds(const void *user, uint32_t i, double low[3], double high[3]) {
+  const TetcastVolume *volume = user;
+  const uint32_t *vertices = shell_only(volume) ? volume->adjacency.shell[i].vertex : volume->adjacency.vertices[i];
+  for (int k = 0; k < 3; ++k) {
+    low[k] = INFINITY;
+    high[k] = -INFINITY;
+  }
+  for (int j = 0; j < (shell_only(volume) ? 3 : 4); ++j) grow(volume, vertices[j], low, high);
+}
+
+/* Scaled coordinates, a value of zero. */
+static TetcastStatus take_vertices(TetcastVolume *volume, const TetcastMesh *mesh) {
+  double largest = 0;
+  for (int k = 0; k < 6; ++k) largest = fmax(largest, fabs(mesh->bounds[k]));
+  if (largest > 0) frexp(largest, &volume->exponent);
+  volume->mesh_is_double = volume->vertices_are_double = mesh->vertices.type == TETCAST_TYPE_FLOAT64;
+  const size_t size = volume->vertices_are_double ? sizeof(double) : sizeof(float);
+  if (!tc_allocate_array(volume->context, &volume->vertices, volume->vertex_count, 4 * size, "vertices")) {
+    return TETCAST_ERROR_MEMORY;
+  }
+  for (int64_t i = 0; i < volume->vertex_count; ++i) {
+    double p[3];
+    tc_mesh_vertex(mesh, i, p);
+    for (int k = 0; k < 3; ++k) {
+      const double x = tc_without_tiny(ldexp(p[k], -volume->exponent));
+      if (volume->vertices_are_double) ((double *)volume->vertices)[4 * i + k] = x;
+      else ((float *)volume->vertices)[4 * i + k] = (float)x;
+    }
+    if (volume->vertices_are_double) ((double *)volume->vertices)[4 * i + 3] = 0;
+    else ((float *)volume->vertices)[4 * i + 3] = 0;
+  }
+  double diagonal2 = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double low = ldexp(mesh->bounds[2 * k], -volume->exponent), high = ldexp(mesh->bounds[2 * k + 1], -volume->exponent);
+    volume->center[k] = 0.5 * low + 0.5 * high;
+    diagonal2 += (high - low) * (high - low);
+  }
+  /* Coordinates are at most 1: what is added covers the rounding of the centre and of distances to it. */
+  volume->radius = 0.5 * sqrt(diagonal2) * (1 + 0x1p-48) + 0x1p-50;
+  return TETCAST_OK;
+}
+
+static double triangle_area(const TetcastVolume *volume, const uint32_t vertex[3]) {
+  double p[3][4], e[2][3];
+  for (int j = 0; j < 3; ++j) tc_volume_vertex(volume, vertex[j], p[j]);
+  for (int j = 0; j < 2; ++j) {
+    for (int k = 0; k < 3; ++k) e[j][k] = p[j + 1][k] - p[0][k];
+  }
+  const double x = e[0][1] * e[1][2] - e[0][2] * e[1][1], y = e[0][2] * e[1][0] - e[0][0] * e[1][2],
+               z = e[0][0] * e[1][1] - e[0][1] * e[1][0];
+  return 0.5 * sqrt(x * x + y * y + z * z);
+}
+
+static void describe(TetcastVolume *volume, const TetcastMesh *mesh) {
+  TetcastVolumeInfo *info = &volume->info;
+  info->vertices = volume->vertex_count;
+  info->tetrahedra = volume->cell_count;
+  info->left_out = volume->mesh_cell_count - volume->cell_count;
+  memcpy(info->bounds, mesh->bounds, sizeof info->bounds);
+  info->shell_faces = shell_only(volume) ? volume->adjacency.shell_count : volume->cell_count;
+  info->traversal = volume->traversal;
+  double area = 0;
+  for (int64_t i = 0; i < volume->adjacency.shell_count; ++i) area += triangle_area(volume, volume->adjacency.shell[i].vertex);
+  info->boundary_area = ldexp(ldexp(area, volume->exponent), volume->exponent);
+}
+
+static TetcastStatus build(TetcastVolume *volume, const TetcastMesh *mesh, const TetcastVolumeDesc *desc) {
+  TetcastStatus status = take_vertices(volume, mesh);
+  if (status) return status;
+  status = tc_adjacency_build(mesh, !shell_only(volume), &desc->progress, &volume->adjacency);
+  if (status) return status;
+  volume->cell_count = volume->adjacency.cell_count;
+  if (volume->cell_count == 0) {
+    return tc_error(volume->context, TETCAST_ERROR_DATA, "the mesh has no cell with an inside (%" PRId64 " tetrahedra)",
+                    volume->mesh_cell_count);
+  }
+  if (volume->cell_count < volume->mesh_cell_count) {
+    tc_warning(volume->context, "%" PRId64 " tetrahedra left out: %" PRId64 " with a vertex twice, %" PRId64
+               " duplicates of others", volume->mesh_cell_count - volume->cell_count, volume->adjacency.collapsed,
+               volume->adjacency.duplicates);
+  }
+  describe(volume, mesh);
+  if (!shell_only(volume)) tc_adjacency_drop_links(&volume->adjacency);
+  return tc_embree_create(volume->context, volume->info.shell_faces, volume->center, volume->radius, primitive_bounds, volume,
+                          &volume->embree);
+}
+
+TetcastStatus tc_volume_create(TetcastContext *context, const TetcastMesh *mesh, const TetcastVolumeDesc *desc,
+                               TetcastVolume **out) {
+  if (mesh->tetrahedra.count == 0) return tc_error(context, TETCAST_ERROR_DATA, "the mesh has no tetrahedra");
+  TetcastVolume *volume;
+  if (!tc_allocate_array(context, (void **)&volume, 1, sizeof *volume, "volume")) return TETCAST_ERROR_MEMORY;
+  memset(volume, 0, sizeof *volume);
+  volume->context = context;
+  volume->traversal = desc->traversal;
+  volume->vertex_count = mesh->vertices.count;
+  volume->mesh_cell_count = mesh->tetrahedra.count;
+  const TetcastStatus status = build(volume, mesh, desc);
+  if (status) {
+    tc_volume_destroy(volume);
+    return status;
+  }
+  *out = volume;
+  return TETCAST_OK;
+}
+
+void tc_volume_destroy(TetcastVolume *volume) {
+  if (!volume) return;
+  TetcastContext *context = volume->context;
+  tc_embree_destroy(volume->embree);
+  if (volume->adjacency.context) tc_adjacency_clear(&volume->adjacency);
+  tc_release(context, volume->vertices);
+  tc_release(context, volume->cell_values);
+  tc_release(context, volume);
+}
+
+/* The vertices with room for values of the wanted precision: as they are, or a new array. */
+static void *vertices_in(const TetcastVolume *volume, bool is_double) {
+  if (is_double == volume->vertices_are_double) return volume->vertices;
+  void *vertices = NULL;
+  const size_t size = 4 * (is_double ? sizeof(double) : sizeof(float));
+  if (!tc_allocate_array(volume->context, &vertices, volume->vertex_count, size, "vertices")) return NULL;
+  for (int64_t i = 0; i < volume->vertex_count; ++i) {
+    double v[4];
+    tc_volume_vertex(volume, (uint32_t)i, v);
+    for (int k = 0; k < 4; ++k) {
+      if (is_double) ((double *)vertices)[4 * i + k] = v[k];
+      else ((float *)vertices)[4 * i + k] = (float)v[k];
+    }
+  }
+  return vertices;
+}
+
+static double value_of(const TetcastField *field, int64_t i) {
+  const double s = tc_array_double(&field->values, field->values.stride, i, 0);
+  return fabs(s) <= TC_LARGEST_VALUE ? s : (double)NAN;
+}
+
+static TetcastStatus set_point_field(TetcastVolume *volume, const TetcastField *field) {
+  const bool is_double = volume->mesh_is_double || field->values.type != TETCAST_TYPE_FLOAT32;
+  void *vertices = vertices_in(volume, is_double);
+  if (!vertices) return TETCAST_ERROR_MEMORY;
+  if (vertices != volume->vertices) tc_release(volume->context, volume->vertices);
+  volume->vertices = vertices;
+  volume->vertices_are_double = is_double;
+  for (int64_t i = 0; i < volume->vertex_count; ++i) {
+    const double s = value_of(field, i);
+    if (is_double) ((double *)vertices)[4 * i + 3] = s;
+    else ((float *)vertices)[4 * i + 3] = (float)s;
+  }
+  tc_release(volume->context, volume->cell_values);
+  volume->cell_values = NULL;
+  return TETCAST_OK;
+}
+
+static TetcastStatus set_cell_field(TetcastVolume *volume, const TetcastField *field) {
+  if (!volume->cell_values && !tc_allocate_array(volume->context, (void **)&volume->cell_values, volume->cell_count,
+                                                 sizeof(double), "cell values")) {
+    return TETCAST_ERROR_MEMORY;
+  }
+  const uint32_t *source = volume->adjacency.source;
+  for (int64_t i = 0; i < volume->cell_count; ++i) volume->cell_values[i] = value_of(field, source ? source[i] : i);
+  return TETCAST_OK;
+}
+
+TetcastStatus tc_volume_set_field(TetcastVolume *volume, const TetcastField *field) {
+  const bool point = field->association == TETCAST_POINT;
+  const int64_t wanted = point ? volume->vertex_count : volume->mesh_cell_count;
+  if (field->values.count != wanted) {
+    return tc_error(volume->context, TETCAST_ERROR_ARGUMENT, "the field has %" PRId64 " values, the mesh %" PRId64 " %s",
+                    field->values.count, wanted, point ? "vertices" : "tetrahedra");
+  }
+  const TetcastStatus status = point ? set_point_field(volume, field) : set_cell_field(volume, field);
+  if (status) return status;
+  volume->association = field->association;
+  volume->has_field = true;
+  tc_field_range(field, volume->info.field_range, &volume->info.field_nonfinite);
+  return TETCAST_OK;
+}
+
+void tc_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info) {
+  *info = volume->info;
+  const size_t record = 4 * (volume->vertices_are_double ? sizeof(double) : sizeof(float));
+  const TcAdjacency *adjacency = &volume->adjacency;
+  const size_t cells = (size_t)volume->cell_count, shell = (size_t)adjacency->shell_count;
+  info->bytes = sizeof *volume + (size_t)volume->vertex_count * record + tc_embree_bytes(volume->embree) +
+                (adjacency->cells ? cells * sizeof *adjacency->cells : 0) +
+                (adjacency->shell ? shell * sizeof *adjacency->shell : 0) +
+                (adjacency->vertices ? cells * sizeof *adjacency->vertices : 0) +
+                (adjacency->source ? (size_t)volume->mesh_cell_count * sizeof *adjacency->source : 0) +
+                (volume->cell_values ? cells * sizeof *volume->cell_values : 0);
+}

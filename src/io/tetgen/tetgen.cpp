@@ -103,12 +103,15 @@ int scale_to_unit(Plc &plc) {
     low[i % 3] = i < 3 ? x : std::fmin(low[i % 3], x);
     high[i % 3] = i < 3 ? x : std::fmax(high[i % 3], x);
   }
-  // halves, for the difference of two finite numbers may be infinite
-  double half = std::fmax(high[0] / 2 - low[0] / 2, std::fmax(high[1] / 2 - low[1] / 2, high[2] / 2 - low[2] / 2));
-  if (!(half > 0)) {
-    fail(TETCAST_ERROR_DATA, "all points of the surface are the same");
+  double half[3]; // halves, for the difference of two finite numbers may be infinite
+  for (int j = 0; j < 3; j++) {
+    half[j] = high[j] / 2 - low[j] / 2;
   }
-  int exponent = std::ilogb(half) + 1;
+  double largest = std::fmax(half[0], std::fmax(half[1], half[2]));
+  if (!(half[0] > largest * 1e-300 && half[1] > largest * 1e-300 && half[2] > largest * 1e-300)) {
+    fail(TETCAST_ERROR_DATA, "the surface is flat and has no inside");
+  }
+  int exponent = std::ilogb(largest) + 1;
   for (std::vector<double> *array : {&plc.points, &plc.holes, &plc.facet_holes}) {
     for (double &x : *array) {
       x = std::scalbn(x, -exponent);

@@ -69,6 +69,7 @@ template <typename Offsets> static vtkSmartPointer<vtkCellArray> cells_of(vtkDat
   offsets->SetNumberOfValues(count + 1);
   for (int64_t i = 0; i <= count; ++i) offsets->SetValue(i, static_cast<typename Offsets::ValueType>(4 * i));
   auto cells = vtkSmartPointer<vtkCellArray>::New();
+  connectivity->SetNumberOfComponents(1); // a flat list to VTK
   if (!cells->SetData(offsets, connectivity)) fail(TETCAST_ERROR_DATA, "VTK refuses the mesh's indices");
   return cells;
 }
@@ -91,6 +92,19 @@ static vtkSmartPointer<vtkCellArray> make_cells(const TetcastMesh *mesh) {
   return cells_of<vtkTypeInt64Array>(indices, count);
 }
 
+// VTK writes names as they are.
+static std::string xml_name(const char *name) {
+  std::string result;
+  for (const char *c = name; *c; ++c) {
+    if (static_cast<unsigned char>(*c) < ' ') fail(TETCAST_ERROR_ARGUMENT, "a field's name has control characters");
+    if (*c == '&') result += "&amp;";
+    else if (*c == '<') result += "&lt;";
+    else if (*c == '"') result += "&quot;";
+    else result += *c;
+  }
+  return result;
+}
+
 static void add_field(vtkUnstructuredGrid *grid, const TetcastMesh *mesh, const char *name, const TetcastField *field) {
   const bool points = tetcast_field_association(field) == TETCAST_POINT;
   const int64_t wanted = points ? tetcast_mesh_vertex_count(mesh) : tetcast_mesh_tetrahedron_count(mesh);
@@ -101,11 +115,12 @@ static void add_field(vtkUnstructuredGrid *grid, const TetcastMesh *mesh, const 
   }
   vtkDataSetAttributes *attributes = grid->GetPointData();
   if (!points) attributes = grid->GetCellData();
-  if (attributes->HasArray(name)) fail(TETCAST_ERROR_ARGUMENT, "two fields are called '%s'", name);
+  const std::string written = xml_name(name);
+  if (attributes->HasArray(written.c_str())) fail(TETCAST_ERROR_ARGUMENT, "two fields are called '%s'", name);
   const DataArray array = wrap(values, 1);
-  array->SetName(name);
+  array->SetName(written.c_str());
   attributes->AddArray(array);
-  if (!attributes->GetScalars()) attributes->SetActiveScalars(name); // the first is what readers show by default
+  if (!attributes->GetScalars()) attributes->SetActiveScalars(written.c_str()); // the first is what readers show by default
 }
 
 static vtkSmartPointer<vtkUnstructuredGrid> make_grid(const TetcastMesh *mesh, int count, const char *const *names,
@@ -171,9 +186,8 @@ private:
   std::string target_, path_;
 };
 
-static void write_grid(const char *path, vtkUnstructuredGrid *grid) {
+static void write_grid(const char *path, vtkUnstructuredGrid *grid, const Capture &capture) {
   Temporary temporary(path);
-  const Capture capture;
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
   writer->SetFileName(temporary.path());
   writer->SetInputData(grid);
@@ -201,6 +215,7 @@ TetcastStatus tetcast_dataset_write(TetcastContext *context, const char *path, c
                                  "tetcast_dataset_write: context, path, mesh, names and fields must not be NULL");
   }
   return fence(context, path, [&] {
+    const Capture capture;
     vtkSmartPointer<vtkUnstructuredGrid> grid;
     try {
       grid = make_grid(mesh, count, names, fields);
@@ -208,6 +223,6 @@ TetcastStatus tetcast_dataset_write(TetcastContext *context, const char *path, c
       failure.text = std::string(path) + ": " + failure.text;
       throw;
     }
-    write_grid(path, grid);
+    write_grid(path, grid, capture);
   });
 }

@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#ifndef TC_RENDER_RENDER_H
+#define TC_RENDER_RENDER_H
+
+#include <tetcast/scene.h>
+
+#include "base/base.h"
+#include "optics/transfer.h"
+#include "traverse/trace.h"
+#include "traverse/volume.h"
+
+struct TetcastFrame {
+  TetcastContext *context;
+  int64_t width, height, row_stride;
+  TetcastType type;
+  void *pixels;
+  void *memory; /* NULL when the pixels are borrowed */
+};
+
+struct TetcastScene {
+  TetcastContext *context;
+  const TetcastVolume *volume;
+  TetcastTransferFunction *transfer; /* extinction per scaled length (volume.h); NULL: none set yet */
+};
+
+/* A camera in scaled coordinates: position (u, v) ∈ [−1, 1]² of the picture looks along forward + u right + v up (perspective), or
+ * starts at eye + u right + v up (orthographic). */
+typedef struct TcView {
+  double eye[3], forward[3], right[3], up[3];
+  bool orthographic;
+} TcView;
+
+TetcastStatus tc_view_create(TetcastContext *context, const TetcastCamera *camera, const TetcastVolume *volume, double aspect,
+                             TcView *view);
+/* Start and unit direction of the ray at (u, v). */
+void tc_view_ray(const TcView *view, double u, double v, double eye[3], double direction[3]);
+TetcastCamera tc_camera_default(const double bounds[6], double aspect);
+
+TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *desc, TetcastFrame **frame);
+void tc_frame_destroy(TetcastFrame *frame);
+void tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, const double rgba[4]);
+
+/* What a worker keeps to itself. */
+typedef struct TcWorker {
+  TcSpans spans;
+  int64_t segments, lost;
+} TcWorker;
+
+/* What a frame is made from; the same for all kernels. */
+typedef struct TcJob {
+  const TetcastVolume *volume;
+  const TcPieces *pieces;
+  TcView view;
+  int64_t width, height;
+  int samples_x, samples_y;
+  TetcastFrame *frame;
+} TcJob;
+
+/* A kernel renders the pixels [x0, x1) × [y0, y1). False: out of memory. */
+typedef bool TcKernel(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker);
+
+TcKernel tc_kernel_scalar;
+
+/* The light of one ray: the slow and simple way, in which a kernel may fall back on and against which it is tested. */
+bool tc_cast(const TetcastVolume *volume, const TcPieces *pieces, const double eye[3], const double direction[3], TcWorker *worker,
+             TcLight *light);
+
+TetcastStatus tc_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **scene);
+void tc_scene_destroy(TetcastScene *scene);
+TetcastStatus tc_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer);
+TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
+                              TetcastFrame *frame, TetcastRenderStats *stats);
+
+/* The extinction [1/length] with which a preset over [low, high] makes a good first picture of the volume. */
+TetcastStatus tc_preset_extinction(TetcastContext *context, const TetcastVolume *volume, double low, double high,
+                                   double *extinction);
+
+#endif

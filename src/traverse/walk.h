@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The walk: from a shell face through cell after cell to the shell face where the ray leaves. The cells a ray meets form paths, each
+ * face joins at most two cells, so a path that starts at the shell can't return to a cell and ends at the shell: the walk terminates
+ * on any adjacency, and every path is found from either end. */
+#ifndef TC_TRAVERSE_WALK_H
+#define TC_TRAVERSE_WALK_H
+
+#include "traverse/rayspace.h"
+
+/* The ray at a face. v[0], v[1], v[2] lie counter-clockwise around it: edge[k] = v[k] × v[k+1] > 0. */
+typedef struct TcWalk {
+  TcPoint v[3];
+  double edge[3];
+  double z, s;   /* where the ray crosses the face */
+  uint32_t cell; /* the cell ahead, or TC_SHELL | the shell face that was reached */
+} TcWalk;
+
+static inline void tc_walk_cross(TcWalk *walk) {
+  tc_crossing(&walk->v[0], &walk->v[1], &walk->v[2], walk->edge[0], walk->edge[1], walk->edge[2], &walk->z, &walk->s);
+}
+
+/* Sets out from a shell face that the ray crosses. */
+static inline void tc_walk_begin(const TetcastVolume *volume, const TcRay *ray, uint32_t face, TcWalk *walk) {
+  const TcShellFace *shell = &volume->adjacency.shell[face];
+  for (int k = 0; k < 3; ++k) walk->v[k] = tc_project(volume, ray, shell->vertex[k]);
+  if (tc_edge(&walk->v[0], &walk->v[1]) < 0) {
+    const TcPoint t = walk->v[1];
+    walk->v[1] = walk->v[2];
+    walk->v[2] = t;
+  }
+  for (int k = 0; k < 3; ++k) walk->edge[k] = tc_edge(&walk->v[k], &walk->v[(k + 1) % 3]);
+  walk->cell = shell->cell;
+  tc_walk_cross(walk);
+}
+
+/* Crosses the cell ahead. Of the six edges, with q the vertex opposite the face, the signs of v[k] × q name the face through which
+ * the ray leaves: that without v[k], where it passes q between the other two. False if there is none, which the exact signs of
+ * tc_edge() exclude. */
+static inline bool tc_walk_step(const TetcastVolume *volume, const TcRay *ray, TcWalk *walk) {
+  const TcCell *cell = &volume->adjacency.cells[walk->cell];
+  TcPoint *v = walk->v;
+  const uint32_t id = cell->vertex_xor ^ v[0].id ^ v[1].id ^ v[2].id;
+  const TcPoint q = tc_project(volume, ray, id);
+  const double e[3] = {tc_edge(&v[0], &q), tc_edge(&v[1], &q), tc_edge(&v[2], &q)};
+  int out; /* the vertex that is left behind: q comes between the two others */
+  if (e[1] > 0 && e[0] < 0) out = 2;
+  else if (e[2] > 0 && e[1] < 0) out = 0;
+  else if (e[0] > 0 && e[2] < 0) out = 1;
+  else return false;
+  const uint32_t left = v[out].id, next = v[(out + 1) % 3].id, last = v[(out + 2) % 3].id;
+  const int rank = (left > id) + (left > next) + (left > last);
+  walk->edge[out] = -e[(out + 1) % 3];   /* q × v[out + 1] */
+  walk->edge[(out + 2) % 3] = e[(out + 2) % 3]; /* v[out + 2] × q */
+  v[out] = q;
+  walk->cell = cell->neighbor[rank];
+  tc_walk_cross(walk);
+  return true;
+}
+
+#endif
