@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Writes the surfaces that the datasets of this folder are made from, in TetGen's .smesh format, into the folder given. */
+/* Writes the surfaces that the datasets of this folder are made from, as .smesh files into the folder given. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -94,35 +94,43 @@ static void add_sphere(const double center[3], double radius, int n) {
           }
 }
 
-/* A tube of radius `thickness` around the curve that winds p times around the z axis and q times around the circle of radius `ring`
- * in the plane z = 0, at distance `winding` from it (p = 1, q = 0, winding = 0: a torus); n × m triangle pairs. `axis` x: turned to
- * lie around the x axis instead. */
-static void add_tube(const double center[3], int p, int q, double ring, double winding, double thickness, int n, int m, char axis) {
+typedef struct Tube {
+  double center[3];
+  int p, q;             /* it winds p times around the z axis, and q times around … */
+  double ring, winding; /* … the circle of radius `ring` about that axis, at distance `winding` from it */
+  double thickness;     /* its own radius */
+  int n, m;             /* pairs of triangles along and around it */
+  char axis;            /* 'x': turned to lie around the x axis instead */
+} Tube;
+
+/* With p = 1, q = 0, winding = 0 a torus, with p = 2, q = 3 a trefoil knot. */
+static void add_tube(Tube tube) {
   const int first = point_count;
-  for (int i = 0; i < n; i++) {
-    const double u = 2 * pi * p * i / n, v = 2 * pi * q * i / n, r = ring + winding * cos(v);
+  for (int i = 0; i < tube.n; i++) {
+    const double u = 2 * pi * tube.p * i / tube.n, v = 2 * pi * tube.q * i / tube.n, r = tube.ring + tube.winding * cos(v);
     /* normal of the torus that the curve lies on, tangent of the curve, and what is perpendicular to both */
     const double normal[3] = {cos(v) * cos(u), cos(v) * sin(u), sin(v)};
-    double t[3] = {-r * p * sin(u) - winding * q * sin(v) * cos(u), r * p * cos(u) - winding * q * sin(v) * sin(u),
-                   winding * q * cos(v)};
+    double t[3] = {-r * tube.p * sin(u) - tube.winding * tube.q * sin(v) * cos(u), r * tube.p * cos(u) - tube.winding * tube.q * sin(v) * sin(u),
+                   tube.winding * tube.q * cos(v)};
     const double length = sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
-    const double side[3] = {(t[1] * normal[2] - t[2] * normal[1]) / length, (t[2] * normal[0] - t[0] * normal[2]) / length,
+    const double side[3] = {
+      (t[1] * normal[2] - t[2] * normal[1]) / length, (t[2] * normal[0] - t[0] * normal[2]) / length,
                             (t[0] * normal[1] - t[1] * normal[0]) / length};
-    for (int j = 0; j < m; j++) {
-      const double w = 2 * pi * j / m;
-      double x[3] = {r * cos(u), r * sin(u), winding * sin(v)};
+    for (int j = 0; j < tube.m; j++) {
+      const double w = 2 * pi * j / tube.m;
+      double x[3] = {r * cos(u), r * sin(u), tube.winding * sin(v)};
       for (int k = 0; k < 3; k++)
-        x[k] += thickness * (cos(w) * normal[k] + sin(w) * side[k]);
-      if (axis == 'x')
-        add_point(center[0] + x[2], center[1] + x[0], center[2] + x[1]);
+        x[k] += tube.thickness * (cos(w) * normal[k] + sin(w) * side[k]);
+      if (tube.axis == 'x')
+        add_point(tube.center[0] + x[2], tube.center[1] + x[0], tube.center[2] + x[1]);
       else
-        add_point(center[0] + x[0], center[1] + x[1], center[2] + x[2]);
+        add_point(tube.center[0] + x[0], tube.center[1] + x[1], tube.center[2] + x[2]);
     }
   }
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < m; j++) {
-      const int a = first + i * m + j, b = first + (i + 1) % n * m + j;
-      const int c = first + (i + 1) % n * m + (j + 1) % m, d = first + i * m + (j + 1) % m;
+  for (int i = 0; i < tube.n; i++)
+    for (int j = 0; j < tube.m; j++) {
+      const int a = first + i * tube.m + j, b = first + (i + 1) % tube.n * tube.m + j;
+      const int c = first + (i + 1) % tube.n * tube.m + (j + 1) % tube.m, d = first + i * tube.m + (j + 1) % tube.m;
       add_facet(a, b, c, -1);
       add_facet(a, c, d, -1);
     }
@@ -167,25 +175,24 @@ static void molecule(const char *folder) {
 
 /* a ring across a channel, and a ball behind it */
 static void channel(const char *folder) {
-  const double ring[3] = {-0.6, 0, 0};
   start();
   add_box(2, 1, 1);
-  add_tube(ring, 1, 0, 0.55, 0, 0.17, 72, 22, 'x');
-  add_hole(ring[0], 0.55, 0);
+  add_tube((Tube){{-0.6, 0, 0}, 1, 0, 0.55, 0, 0.17, 72, 22, 'x'});
+  add_hole(-0.6, 0.55, 0);
   add_cavity(0.75, 0, 0, 0.38, 12);
   write_smesh(folder, "flow.smesh");
 }
 
 static void trefoil(const char *folder) {
   start();
-  add_tube(origin, 2, 3, 2, 0.9, 0.5, 300, 28, 'z');
+  add_tube((Tube){{0, 0, 0}, 2, 3, 2, 0.9, 0.5, 220, 20, 'z'});
   write_smesh(folder, "trefoil.smesh");
 }
 
 static void shell(const char *folder) {
   start();
-  add_sphere(origin, 1, 22);
-  add_sphere(origin, 0.55, 12);
+  add_sphere(origin, 1, 18);
+  add_sphere(origin, 0.55, 10);
   add_hole(0, 0, 0);
   write_smesh(folder, "shell.smesh");
 }

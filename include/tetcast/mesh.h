@@ -56,7 +56,7 @@ typedef struct TetcastMeshHealth {
   int64_t unused_vertices;    /* vertices of no cell */
   int64_t coincident_vertices;/* used vertices whose coordinates another used vertex before them has: unmerged seams */
   double volume;              /* sum of the cells' absolute volumes */
-  double boundary_area;       /* area of the boundary faces */
+  double boundary_area;       /* area of the faces at which rays enter and leave: boundary and, for each of its cells, non-manifold */
 } TetcastMeshHealth;
 
 /* Examines the mesh; about as long as preparing a volume of it. */

@@ -46,8 +46,8 @@ TETCAST_API TetcastStatus tetcast_transfer_function_create(TetcastContext *conte
                                                            TetcastTransferFunction **transfer_function);
 
 /* A named colour map over [low, high] (low ≤ high) with an extinction that rises linearly from 0 at `low`, scaled so that
- * a ray through the volume meets on average an optical depth of about 1.5, whatever the unit of length and however
- * the field's values are distributed. The volume must have a field. An unknown name is TETCAST_ERROR_ARGUMENT; the
+ * rays that meet the volume are on average about half opaque, whatever the unit of length and however the field's values are
+ * distributed. The volume must have a field. An unknown name is TETCAST_ERROR_ARGUMENT; the
  * message lists the names. */
 TETCAST_API TetcastStatus tetcast_transfer_function_create_preset(TetcastContext *context, const TetcastVolume *volume,
                                                                   const char *name, double low, double high,

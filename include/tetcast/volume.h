@@ -51,8 +51,7 @@ typedef struct TetcastVolumeInfo {
   int64_t shell_faces;     /* faces (shell) or cells (faces) that Embree holds */
   size_t bytes;            /* resident memory: arrays of the volume and what Embree holds for it */
   double bounds[6];        /* of its cells: xmin, xmax, ymin, ymax, zmin, zmax */
-  double cell_volume;      /* sum of the cells' volumes */
-  double boundary_area;    /* area of the faces that only one cell has */
+  double boundary_area;    /* area of the faces at which rays enter and leave */
   double field_range[2];   /* smallest and largest finite value of the field, 0, 0 without one */
   int64_t field_nonfinite; /* values that are NaN or infinite */
   TetcastTraversal traversal;

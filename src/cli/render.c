@@ -59,6 +59,18 @@ static int check(Run *run) {
   run->context = cli_context_create((int)options->threads);
   if (!run->context)
     return CLI_FAILED;
+  if (render_options_given(options, OPTION_TRANSFER)) {
+    run->transfer_function = transfer_file_load(run->context, options);
+    if (!run->transfer_function)
+      return CLI_FAILED;
+  } else if (render_options_given(options, OPTION_OPACITY_MODEL)) {
+    cli_warning("a preset states extinction: --opacity-model has no effect");
+  }
+  if ((options->stats && !cli_file_check(options->stats)) ||
+      (options->save_scene && !cli_file_check(options->save_scene)))
+    return CLI_FAILED;
+  if (options->source >> OPTION_BACKGROUND & 1 && floating_output(options)) /* on the command line, that is */
+    cli_warning("--background has no effect: floating-point pixels hold the picture without background");
   run->image = cli_image();
   if (!run->image)
     return CLI_FAILED;
@@ -66,21 +78,7 @@ static int check(Run *run) {
   run->image_desc.pixel_type = (TetcastPixelType)options->pixel_type;
   memcpy(run->image_desc.background, options->background, sizeof options->background);
   const TetcastStatus status = run->image->image_check(run->context, options->output, &run->image_desc);
-  if (status != TETCAST_OK)
-    return cli_failed(status);
-  if ((options->stats && !cli_file_check(options->stats)) ||
-      (options->save_scene && !cli_file_check(options->save_scene)))
-    return CLI_FAILED;
-  if (options->source >> OPTION_BACKGROUND & 1 && floating_output(options)) /* on the command line, that is */
-    cli_warning("--background has no effect: floating-point pixels hold the picture without background");
-
-  if (render_options_given(options, OPTION_TRANSFER)) {
-    run->transfer_function = transfer_file_load(run->context, options);
-    return run->transfer_function ? CLI_DONE : CLI_FAILED;
-  }
-  if (render_options_given(options, OPTION_OPACITY_MODEL))
-    cli_warning("a preset states extinction: --opacity-model has no effect");
-  return CLI_DONE;
+  return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }
 
 static void warn_about_field(const Run *run) {

@@ -23,7 +23,7 @@ typedef struct Build {
   uint64_t *faces;         /* [4 · cell_count]: face numbers by bucket, sorted within it after find_duplicates() */
   TcCell *cells;
   _Atomic(unsigned char) *duplicate; /* [cell_count] or NULL */
-  atomic_llong duplicates, nonmanifold, boundary;
+  atomic_llong duplicates, boundary, nonmanifold, shell;
   atomic_bool out_of_memory;
 } Build;
 
@@ -118,8 +118,8 @@ static bool link_cells(void *data, int64_t begin, int64_t end, int worker) {
         build->cells[b >> 2].neighbor[b & 3] = (uint32_t)(a >> 2);
       } else {
         for (size_t j = 0; j < n; ++j) build->cells[faces[i + j].number >> 2].neighbor[faces[i + j].number & 3] = TC_SHELL;
-        atomic_fetch_add(&build->boundary, (long long)n);
-        if (n > 2) atomic_fetch_add(&build->nonmanifold, 1);
+        atomic_fetch_add(&build->shell, (long long)n);
+        atomic_fetch_add(n == 1 ? &build->boundary : &build->nonmanifold, 1);
       }
     }
     if (faces != small) tc_release(build->context, faces);
@@ -229,7 +229,8 @@ static TetcastStatus run(const TetcastMesh *mesh, Build *build, TcAdjacency *res
   if (atomic_load(&build->out_of_memory)) return out_of_memory(build);
   if (status) return status;
   result->nonmanifold = atomic_load(&build->nonmanifold);
-  result->shell_count = atomic_load(&build->boundary);
+  result->boundary = atomic_load(&build->boundary);
+  result->shell_count = atomic_load(&build->shell);
   if (result->shell_count > TC_MAX_COUNT) {
     return tc_error(context, TETCAST_ERROR_LIMIT, "%lld boundary faces: at most %d can be held", (long long)result->shell_count,
                     (int)TC_MAX_COUNT);

@@ -29,6 +29,7 @@ typedef struct TcAdjacency {
   uint32_t *source;        /* [cell_count]: the mesh's cell; NULL: the same number */
   int64_t collapsed;       /* left out: a vertex twice */
   int64_t duplicates;      /* left out: the four vertices of an earlier cell */
+  int64_t boundary;        /* faces of one cell */
   int64_t nonmanifold;     /* faces of three cells or more; each is a shell face of all of them */
 } TcAdjacency;
 

@@ -122,7 +122,7 @@ TetcastStatus tc_mesh_health(TetcastContext *context, const TetcastMesh *mesh, T
     health->volume += fabs(volume);
   }
   for (int64_t i = 0; i < adjacency.shell_count; ++i) health->boundary_area += triangle_area(mesh, adjacency.shell[i].vertex);
-  health->boundary_faces = adjacency.shell_count;
+  health->boundary_faces = adjacency.boundary;
   status = count_components(context, &adjacency, &health->components);
   tc_adjacency_clear(&adjacency);
   if (!status) status = examine_vertices(context, mesh, health);

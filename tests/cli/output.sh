@@ -57,7 +57,7 @@ warn '--opacity-model has no effect' \
 # Values that are not finite.
 scalar='0 1 nan 2 3 4 6 5' vtu nan.vtu "$five_tetrahedra" 10
 warn 'NaN' render nan.vtu -o nan.png --size 40x30
-scalar='nan nan nan nan nan nan nan nan' vtu empty.vtu "$five_tetrahedra" 10
+scalar='nan nan nan nan nan nan nan 0' vtu empty.vtu "$five_tetrahedra" 10
 warn 'NaN' render empty.vtu -o empty.png --size 40x30
 
 # Statistics.
@@ -99,7 +99,7 @@ done
 (ulimit -f 0 && "$tetcast" render cube.vtu -o full.png --size 9x9) 2>/dev/null && fail 'exit code 0 on a full disk'
 find . -name '.*tetcast*' | grep . && fail 'temporary files are left'
 if mkdir small && mount -t tmpfs -o size=16k tmpfs small 2>/dev/null; then
-  refuse 1 'No space left' render cube.vtu -o small/a.png --size 400x300
+  refuse 1 'No space left' render cube.vtu -o small/a.tif --size 400x300
   umount small
 fi
 finish

@@ -28,6 +28,6 @@ contains '"eye":\[0.5,0.5,3.8460\].*"ortho":2.5'
 camera --fovy 30
 contains '"eye":\[0.5,0.5,3.8460\]'
 size=10x20 camera --fovy 30 # half as wide as high: farther away
-contains '"eye":\[0.5,0.5,6.9'
+contains '"eye":\[0.5,0.5,7.0218'
 refuse 1 'parallel' render cube.vtu -o b.png --eye 5,0.5,0.5 --up 1,0,0
 finish

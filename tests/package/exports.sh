@@ -16,8 +16,10 @@ cat "$1"/tetcast/*.h "$2"/tetcast/*.h | tr '\n' ' ' | grep -oE 'TETCAST_API [^(;
 shift 2
 core=$1 all=true
 for library in "$@"; do
-  # Strong symbols only: C++ shares templates' and type information's weak ones between libraries by design.
-  nm -D --defined-only "$library" | awk '$2 ~ /[TBDRG]/ { print $3 }' >>"$exported"
+  # Strong symbols only: C++ shares templates' and type information's weak ones between libraries by design. The exceptions are the
+  # linker's own, and a function of TetGen's that ends the process: the adapter puts one in its place that does not.
+  nm -D --defined-only "$library" | awk '$2 ~ /[TBDRG]/ { print $3 }' |
+    grep -vE '^(__bss_start|_edata|_end|_Z15terminatetetgenP10tetgenmeshi)$' >>"$exported" || :
 done
 [ $# -eq 4 ] || all=false # some adapter was not built: its functions are missing, rightly
 for symbol in $(sort "$exported" | comm -13 "$declared" -); do

@@ -136,7 +136,8 @@ public:
       add_cell(i, seen);
   }
 
-  std::array<Real, 4> ray_rgba(const Ray<Real> &ray) const {
+  /* `folded` is set if cells overlap along the ray: what is seen there is not defined. */
+  std::array<Real, 4> ray_rgba(const Ray<Real> &ray, bool *folded = nullptr) const {
     std::vector<Segment<Real>> segments;
     for (size_t i : candidates(ray)) {
       std::array<Vector<Real>, 4> p;
@@ -149,18 +150,23 @@ public:
     }
     std::sort(segments.begin(), segments.end(), [](const auto &a, const auto &b) { return a.t0 < b.t0; });
     Integral<Real> integral(optics_);
-    for (const auto &segment : segments)
+    Real end = 0;
+    for (const auto &segment : segments) {
+      if (folded && std::min(end, segment.t1) - segment.t0 > Real(1e-15) * segment.t1)
+        *folded = true;
+      end = std::max(end, segment.t1);
       if (!integral.opaque())
         integral.add(segment);
+    }
     return integral.rgba();
   }
 
-  std::array<Real, 4> pixel_rgba(int64_t i, int64_t j) const {
+  std::array<Real, 4> pixel_rgba(int64_t i, int64_t j, bool *folded = nullptr) const {
     std::array<Real, 4> sum{};
     const int64_t n = scene_.samples;
     for (int64_t k = 0; k < n * n; k++) {
       const Real x = i + (k % n + Real(0.5)) / n, y = j + (k / n + Real(0.5)) / n;
-      const auto rgba = ray_rgba(camera_ray<Real>(scene_, x, y));
+      const auto rgba = ray_rgba(camera_ray<Real>(scene_, x, y), folded);
       for (size_t c = 0; c < 4; c++)
         sum[c] += rgba[c] / (n * n);
     }

@@ -191,6 +191,48 @@ static void test_magnitude(void **state) {
   tetcast_dataset_destroy(&dataset);
 }
 
+/* Every kind of attribute a legacy file may have, in both of its cell formats. */
+static void test_legacy_attributes(void **state) {
+  Fixture *fixture = *state;
+  static const char points[] = "POINTS 4 int\n0 0 0 1 0 0 0 1 0 0 0 1\n\nMETADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\n"
+                               "DATA 2 0 1\n\n";
+  static const char cells[][256] = {"CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n",
+                                    "CELLS 2 4\nOFFSETS vtktypeint64\n0 4\nCONNECTIVITY vtktypeint64\n0 1 2 3\nCELL_TYPES 1\n10\n",
+                                    "CELLS 2 4\nOFFSETS int\n0 4\nCONNECTIVITY int\n0 1 2 3\nCELL_TYPES 1\n10\n"};
+  static const char attributes[] =
+    "CELL_DATA 1\nSCALARS cell%20scalar double\nLOOKUP_TABLE mine\n5\nPOINT_DATA 4\nscalars first float 2\nlookup_table default\n"
+    "1 5 1 5 1 5 1 5\nLOOKUP_TABLE mine 2\n0 0 0 1  1 1 1 1\nSCALARS second unsigned_long\nLOOKUP_TABLE default\n5 5 5 5\n"
+    "VECTORS v float\n5 0 0 0 0 5 0 5 0 3 4 0\nNORMALS n float\n0 0 5 0 0 5 0 0 5 0 0 5\nTENSORS t float\n"
+    "5 0 0 0 0 0 0 0 0 5 0 0 0 0 0 0 0 0 5 0 0 0 0 0 0 0 0 5 0 0 0 0 0 0 0 0\nCOLOR_SCALARS c 2\n0 5 0 5 0 5 0 5\n"
+    "TEXTURE_COORDINATES x 2 float\n0 5 0 5 0 5 0 5\nGLOBAL_IDS g vtkIdType\n5 6 7 8\nFIELD FieldData 3\nf 1 4 long\n5 5 5 5\n"
+    "METADATA\nCOMPONENT_NAMES\nf\n\nb 1 4 bit\n1 0 1 0\nNULL_ARRAY\n";
+  static const char *const names[] = {"first", "second", "v", "n", "t", "c", "x", "g", "f", "b", "cell scalar"};
+  for (int i = 0; i < 3; ++i) {
+    char text[4096];
+    snprintf(text, sizeof text, "# vtk DataFile Version %s\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nFIELD FieldData 1\ntime 1 1 double\n7\n%s%s%s",
+             i ? "5.1" : "3.0", points, cells[i], attributes);
+    TetcastDataset *dataset = read_good(fixture, text_file(fixture, "a.vtk", text));
+    for (int j = 0; j < 11; ++j) {
+      TetcastDatasetArray array;
+      assert_true(tetcast_dataset_array(dataset, j, &array));
+      assert_string_equal(array.name, names[j]);
+      assert_int_equal(array.active, j == 0 || j == 10);
+      TetcastField *field;
+      assert_int_equal(tetcast_dataset_field(dataset, j ? names[j] : "first:1", &field, NULL), TETCAST_OK);
+      assert_true(tetcast_field_value(field, 0) == (j == 9 ? 1 : 5));
+      tetcast_field_destroy(&field);
+    }
+    TetcastMesh *mesh; /* whole numbers as coordinates become floating ones */
+    assert_int_equal(tetcast_dataset_mesh(dataset, &mesh), TETCAST_OK);
+    assert_int_equal(tetcast_mesh_vertices(mesh).type, TETCAST_TYPE_FLOAT64);
+    double p[3];
+    tetcast_mesh_vertex(mesh, 3, p);
+    assert_true(p[0] == 0 && p[1] == 0 && p[2] == 1);
+    tetcast_mesh_destroy(&mesh);
+    tetcast_dataset_destroy(&dataset);
+  }
+}
+
 /* XML under the other name, other blanks and quotes. */
 static void test_content_beats_extension(void **state) {
   Fixture *fixture = *state;
@@ -372,7 +414,7 @@ static void test_threads(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
     TEST(test_mixed_cells), TEST(test_selectors),    TEST(test_default_field), TEST(test_magnitude),
-    TEST(test_content_beats_extension), TEST(test_encodings), TEST(test_pieces), TEST(test_others_files),
+    TEST(test_legacy_attributes), TEST(test_content_beats_extension), TEST(test_encodings), TEST(test_pieces), TEST(test_others_files),
     TEST(test_conforming), TEST(test_threads),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -16,10 +16,10 @@ namespace {
 class Numbers {
 public:
   explicit Numbers(const std::string &path) : path_(path) {
+    errno = 0;
     std::unique_ptr<FILE, int (*)(FILE *)> file(std::fopen(path.c_str(), "rb"), std::fclose);
     char block[65536];
     std::size_t n = 0;
-    errno = 0;
     while (file && (n = std::fread(block, 1, sizeof block, file.get())) > 0) {
       text_.append(block, n);
     }

@@ -120,6 +120,22 @@ int scale_to_unit(Plc &plc) {
   return exponent;
 }
 
+// The volume that the facets enclose if they all face the same way, as those of surfaces should; an estimate otherwise.
+double enclosed_volume(const Plc &plc) {
+  double volume = 0;
+  const double *o = plc.points.data();
+  for (std::size_t i = 0, start = 0; i < plc.polygon_ends.size(); start = plc.polygon_ends[i++]) {
+    for (std::size_t j = start + 1; j + 1 < plc.polygon_ends[i]; j++) {
+      const double *a = o + 3 * plc.corners[start], *b = o + 3 * plc.corners[j], *c = o + 3 * plc.corners[j + 1];
+      for (int k = 0; k < 3; k++) {
+        int l = (k + 1) % 3, m = (k + 2) % 3;
+        volume += (a[k] - o[k]) * ((b[l] - o[l]) * (c[m] - o[m]) - (b[m] - o[m]) * (c[l] - o[l])) / 6;
+      }
+    }
+  }
+  return std::fmin(std::fabs(volume), 8); // the scaled body lies in a box of edges below 2
+}
+
 void tetrahedralize_quietly(tetgenbehavior &behavior, tetgenio &in, tetgenio &out) {
   Silence silence;
   tetrahedralize(&behavior, &in, &out);
@@ -188,6 +204,9 @@ TetcastStatus fill(TetcastContext *context, Plc &plc, const TetcastTetgenDesc &d
   if (desc.max_volume > 0) {
     behavior.fixedvolume = 1;
     behavior.maxvolume = std::scalbn(desc.max_volume, -3 * exponent);
+    if (enclosed_volume(plc) / behavior.maxvolume > (double)MAX_COUNT) {
+      fail(TETCAST_ERROR_LIMIT, "cells of volume %g would be more than %lld", desc.max_volume, (long long)MAX_COUNT);
+    }
   }
   tetgenio out;
   try {
@@ -217,9 +236,9 @@ void check_desc(const TetcastTetgenDesc &desc) {
   }
 }
 
-// Runs `work(desc)` and turns whatever it throws into a status and a message that starts with `prefix`.
+// Runs `work(desc)` and turns whatever it throws into a status and a message.
 template <typename Work>
-TetcastStatus fenced(TetcastContext *context, const TetcastTetgenDesc *desc, TetcastMesh **mesh, const char *prefix, Work work) {
+TetcastStatus fenced(TetcastContext *context, const TetcastTetgenDesc *desc, TetcastMesh **mesh, Work work) {
   if (!mesh) {
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "mesh is NULL");
   }
@@ -229,11 +248,11 @@ TetcastStatus fenced(TetcastContext *context, const TetcastTetgenDesc *desc, Tet
     check_desc(settings);
     return work(settings);
   } catch (const Failure &failure) {
-    return tetcast_context_error(context, failure.status, "%s%s", prefix, failure.text.c_str());
+    return tetcast_context_error(context, failure.status, "%s", failure.text.c_str());
   } catch (const std::bad_alloc &) {
-    return tetcast_context_error(context, TETCAST_ERROR_MEMORY, "%sout of memory", prefix);
+    return tetcast_context_error(context, TETCAST_ERROR_MEMORY, "out of memory");
   } catch (...) {
-    return tetcast_context_error(context, TETCAST_ERROR_DATA, "%sTetGen failed", prefix);
+    return tetcast_context_error(context, TETCAST_ERROR_DATA, "TetGen failed");
   }
 }
 
@@ -251,7 +270,7 @@ TetcastTetgenDesc tetcast_tetgen_desc_default(void) { return {COOKIE, 1.4, 0}; }
 
 TetcastStatus tetcast_tetgen_mesh(TetcastContext *context, const TetcastSurface *surface, const TetcastTetgenDesc *desc,
                                   TetcastMesh **mesh) {
-  return fenced(context, desc, mesh, "", [&](const TetcastTetgenDesc &settings) {
+  return fenced(context, desc, mesh, [&](const TetcastTetgenDesc &settings) {
     if (!context || !surface) {
       fail(TETCAST_ERROR_ARGUMENT, "%s is NULL", context ? "surface" : "context");
     }
@@ -261,7 +280,7 @@ TetcastStatus tetcast_tetgen_mesh(TetcastContext *context, const TetcastSurface 
 }
 
 TetcastStatus tetcast_tetgen_mesh_file(TetcastContext *context, const char *path, const TetcastTetgenDesc *desc, TetcastMesh **mesh) {
-  return fenced(context, desc, mesh, "", [&](const TetcastTetgenDesc &settings) {
+  return fenced(context, desc, mesh, [&](const TetcastTetgenDesc &settings) {
     if (!context || !path) {
       fail(TETCAST_ERROR_ARGUMENT, "%s is NULL", context ? "path" : "context");
     }
@@ -274,7 +293,12 @@ TetcastStatus tetcast_tetgen_mesh_file(TetcastContext *context, const char *path
     if (!ends_with(name, ".poly") && !ends_with(name, ".smesh")) {
       fail(TETCAST_ERROR_ARGUMENT, "%s: not .poly, .smesh, .node or .ele", path);
     }
-    Plc plc = plc_read(name);
-    return fill(context, plc, settings, mesh);
+    Plc plc = plc_read(name); // its messages name the file already
+    try {
+      return fill(context, plc, settings, mesh);
+    } catch (Failure &failure) {
+      failure.text = name + ": " + failure.text;
+      throw;
+    }
   });
 }

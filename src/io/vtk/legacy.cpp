@@ -1,34 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 // Legacy .vtk files. VTK's own loops over their sections write beyond their memory when counts or cells are damaged; its
-// functions for the single parts are sound and do the work here.
+// functions for single words and arrays are sound once the counts are, and do the work here.
 #include "common.hpp"
 #include "files.hpp"
 
+#include <cstdio>
 #include <cstring>
 
 #include <vtkByteSwap.h>
 #include <vtkCellArray.h>
+#include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDataReader.h>
-#include <vtkFieldData.h>
 #include <vtkIdTypeArray.h>
 #include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkPointData.h>
 #include <vtkUnsignedCharArray.h>
 
 namespace {
 
 using CellArray = vtkSmartPointer<vtkCellArray>;
 
+class Reader : public vtkDataReader {
+public:
+  static Reader *New() { VTK_STANDARD_NEW_BODY(Reader); }
+  using vtkDataReader::DecodeString;
+};
+
 class LegacyFile {
 public:
   LegacyFile(const char *path, const char *type) : path_(path), size_(tcv::file_size(path)) {
-    reader_->ReadAllScalarsOn(); // else the first of each kind only
-    reader_->ReadAllVectorsOn();
-    reader_->ReadAllNormalsOn();
-    reader_->ReadAllTensorsOn();
-    reader_->ReadAllColorScalarsOn();
-    reader_->ReadAllTCoordsOn();
-    reader_->ReadAllFieldsOn();
     if (!reader_->OpenVTKFile(path) || !reader_->ReadHeader(path) || !next() || !is("dataset") || !next() || !is(type)) {
       damaged("the header");
     }
@@ -43,13 +45,12 @@ public:
   // The sections that every dataset may have. False for others.
   bool common_section(vtkPointSet *dataset) {
     if (is("field")) {
-      const auto field = vtkSmartPointer<vtkFieldData>::Take(reader_->ReadFieldData());
-      if (!field) damaged("the field");
+      read_field(nullptr);
     } else if (is("metadata")) {
-      char line[256];
-      while (reader_->ReadLine(line) && line[0] != '\0') {}
+      skip_metadata();
     } else if (is("points")) {
-      if (!reader_->ReadPointCoordinates(dataset, count("POINTS"))) damaged("POINTS");
+      const int64_t points = count("POINTS");
+      if (!reader_->ReadPointCoordinates(dataset, points)) damaged("POINTS");
     } else {
       return false;
     }
@@ -58,11 +59,12 @@ public:
 
   CellArray cells(const char *section) {
     auto result = CellArray::New();
-    if (reader_->GetFileMajorVersion() >= 5) {
-      if (!reader_->ReadCells(result)) damaged(section);
-      return result ? result : CellArray::New();
-    }
     const int64_t cells = count(section), size = count(section);
+    if (reader_->GetFileMajorVersion() >= 5) {
+      const auto offsets = part("offsets", cells), indices = part("connectivity", size);
+      if (cells > 0 && !result->SetData(offsets, indices)) damaged(section);
+      return result;
+    }
     std::vector<int> stream(static_cast<size_t>(size));
     if (!reader_->ReadCellsLegacy(size, stream.data())) damaged(section);
     vtkNew<vtkIdTypeArray> offsets, indices;
@@ -109,18 +111,28 @@ public:
     return result;
   }
 
-  // POINT_DATA or CELL_DATA and what follows: the last thing in a file.
+  // From the keyword POINT_DATA or CELL_DATA to the end of the file.
   void attributes(vtkDataSet *dataset) {
-    const bool points = is("point_data");
-    if (!points && !is("cell_data")) damaged("the keyword", word_);
-    const int64_t have = points ? dataset->GetNumberOfPoints() : dataset->GetNumberOfCells();
-    const int64_t values = count(points ? "POINT_DATA" : "CELL_DATA");
-    if (values != have) {
-      tcv::fail(TETCAST_ERROR_DATA, "%s: %s for %lld %s, but there are %lld", path_, points ? "POINT_DATA" : "CELL_DATA",
-                static_cast<long long>(values), points ? "points" : "cells", static_cast<long long>(have));
-    }
-    const int done = points ? reader_->ReadPointData(dataset, have) : reader_->ReadCellData(dataset, have);
-    if (!done) damaged(points ? "POINT_DATA" : "CELL_DATA");
+    vtkDataSetAttributes *target = nullptr;
+    int64_t have = 0;
+    do {
+      const bool points = is("point_data");
+      if (points || is("cell_data")) {
+        const char *section = points ? "POINT_DATA" : "CELL_DATA";
+        target = dataset->GetPointData();
+        if (!points) target = dataset->GetCellData();
+        have = points ? dataset->GetNumberOfPoints() : dataset->GetNumberOfCells();
+        const int64_t values = count(section);
+        if (values != have) {
+          tcv::fail(TETCAST_ERROR_DATA, "%s: %s for %lld %s, but there are %lld", path_, section, static_cast<long long>(values),
+                    points ? "points" : "cells", static_cast<long long>(have));
+        }
+      } else if (!target) {
+        damaged("the keyword", word_);
+      } else {
+        attribute(target, have);
+      }
+    } while (next());
   }
 
   [[noreturn]] void damaged(const char *section, const char *word = "") const {
@@ -128,6 +140,112 @@ public:
   }
 
 private:
+  using AbstractArray = vtkSmartPointer<vtkAbstractArray>;
+
+  void attribute(vtkDataSetAttributes *target, int64_t have) {
+    static const struct {
+      const char *keyword;
+      int components, attribute;
+    } plain[] = {{"vectors", 3, vtkDataSetAttributes::VECTORS},      {"normals", 3, vtkDataSetAttributes::NORMALS},
+                 {"tensors", 9, vtkDataSetAttributes::TENSORS},      {"tensors6", 6, vtkDataSetAttributes::TENSORS},
+                 {"global_ids", 1, vtkDataSetAttributes::GLOBALIDS}, {"pedigree_ids", 1, vtkDataSetAttributes::PEDIGREEIDS},
+                 {"edge_flags", 1, vtkDataSetAttributes::EDGEFLAG}};
+    if (is("scalars")) return read_scalars(target, have);
+    if (is("field")) return read_field(target);
+    if (is("metadata")) return skip_metadata();
+    if (is("lookup_table")) return skip_lookup_table();
+    if (is("color_scalars")) {
+      const std::string name = word("COLOR_SCALARS");
+      const int64_t components = count("COLOR_SCALARS");
+      add(target, name, values(reader_->GetFileType() == VTK_BINARY ? "unsigned_char" : "float", have, components), -1);
+      return;
+    }
+    if (is("texture_coordinates")) {
+      const std::string name = word("TEXTURE_COORDINATES");
+      const int64_t components = count("TEXTURE_COORDINATES");
+      add(target, name, values(word("TEXTURE_COORDINATES"), have, components), -1);
+      return;
+    }
+    for (const auto &entry : plain) {
+      if (!is(entry.keyword)) continue;
+      const std::string name = word(entry.keyword);
+      add(target, name, values(word(entry.keyword), have, entry.components), entry.attribute);
+      return;
+    }
+    damaged("the keyword", word_);
+  }
+
+  // SCALARS name type [components], then perhaps LOOKUP_TABLE name. (VTK demands the latter.)
+  void read_scalars(vtkDataSetAttributes *target, int64_t have) {
+    char line[256], name[256] = "", type[256] = "";
+    int components = 1;
+    if (!reader_->ReadLine(line) || std::sscanf(line, "%255s %255s %d", name, type, &components) < 2) damaged("SCALARS");
+    if (word("SCALARS") != "LOOKUP_TABLE" && !is("lookup_table")) damaged("SCALARS", name);
+    word("LOOKUP_TABLE");
+    add(target, name, values(type, have, components), vtkDataSetAttributes::SCALARS);
+  }
+
+  // FIELD name count, then for each array its name, components, tuples and type. No target: only passes.
+  void read_field(vtkDataSetAttributes *target) {
+    word("FIELD");
+    const int64_t arrays = count("FIELD");
+    for (int64_t i = 0; i < arrays; ++i) {
+      std::string name = word("FIELD");
+      while (is("metadata")) { // of the array before
+        skip_metadata();
+        name = word("FIELD");
+      }
+      if (name == "NULL_ARRAY") continue;
+      const int64_t components = count("FIELD"), tuples = count("FIELD");
+      const AbstractArray array = values(word("FIELD"), tuples, components);
+      if (target) add(target, name, array, -1);
+    }
+  }
+
+  void skip_lookup_table() {
+    word("LOOKUP_TABLE");
+    values(reader_->GetFileType() == VTK_BINARY ? "unsigned_char" : "float", count("LOOKUP_TABLE"), 4);
+  }
+
+  void skip_metadata() { // ends with an empty line
+    char line[256];
+    reader_->ReadLine(line);
+    while (reader_->ReadLine(line) && line[0] != '\0') {}
+  }
+
+  vtkSmartPointer<vtkDataArray> part(const char *keyword, int64_t size) {
+    if (!next() || !is(keyword)) damaged("the list of cells");
+    const AbstractArray array = values(word(keyword), size, 1);
+    vtkSmartPointer<vtkDataArray> numbers = vtkDataArray::SafeDownCast(array);
+    if (!numbers) damaged("the list of cells");
+    const int type = numbers->GetDataType();
+    if (type != VTK_INT && type != VTK_LONG && type != VTK_LONG_LONG && type != VTK_ID_TYPE) damaged("the list of cells");
+    return numbers;
+  }
+
+  AbstractArray values(const std::string &type, int64_t tuples, int64_t components) {
+    if (components < 1 || components > 8 * size_ || tuples > 8 * size_ / components) { // bits: eight a byte
+      tcv::fail(TETCAST_ERROR_DATA, "%s: an array of %lld × %lld values is more than the file can hold", path_,
+                static_cast<long long>(tuples), static_cast<long long>(components));
+    }
+    const auto array = AbstractArray::Take(reader_->ReadArray(type.c_str(), tuples, components));
+    if (!array || array->GetNumberOfTuples() != tuples) damaged("an array of type", type.c_str());
+    return array;
+  }
+
+  void add(vtkDataSetAttributes *target, const std::string &name, vtkAbstractArray *array, int attribute) {
+    std::vector<char> decoded(name.size() + 1); // %20 and the like
+    reader_->DecodeString(decoded.data(), name.c_str());
+    array->SetName(decoded.data());
+    const int index = target->AddArray(array);
+    if (attribute >= 0 && !target->GetAbstractAttribute(attribute)) target->SetActiveAttribute(index, attribute);
+  }
+
+  std::string word(const char *section) {
+    if (!next()) damaged(section);
+    return word_;
+  }
+
   int64_t count(const char *section) {
     vtkIdType value = -1;
     if (!reader_->Read(&value)) damaged(section);
@@ -140,7 +258,7 @@ private:
 
   const char *path_;
   int64_t size_;
-  vtkNew<vtkDataReader> reader_;
+  vtkNew<Reader> reader_;
   char word_[256] = "";
 };
 

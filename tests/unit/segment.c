@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The integral over one segment, against quadrature in extended precision and at the ends of the number range. */
+#include "support.h"
+
+#include "optics/segment.h"
+#include "optics/transfer.h"
+
+/* w0, w1 by composite Gauss–Legendre (5 nodes) in long double, finely cut where the integrand falls off. */
+static void reference(double a, double a1, long double w[2]) {
+  static const long double node[5] = {-0.906179845938663992797626878299392965L, -0.538469310105683091036314420700208805L, 0,
+                                      0.538469310105683091036314420700208805L, 0.906179845938663992797626878299392965L};
+  static const long double weight[5] = {0.236926885056189087514264040719917363L, 0.478628670499366468041291514835638193L,
+                                        0.568888888888888888888888888888888889L, 0.478628670499366468041291514835638193L,
+                                        0.236926885056189087514264040719917363L};
+  const long double b = (long double)a1 - a;
+  w[0] = w[1] = 0;
+  long double u = 0;
+  const long double top = fmaxl(fmaxl(a, a1), 1);
+  while (u < 1) { /* steps in which the optical depth and its slope change little */
+    const long double step = fminl(1 - u, 0.03125L / fmaxl(a + b * u, sqrtl(top)));
+    for (int i = 0; i < 5; ++i) {
+      const long double v = u + step * (1 + node[i]) / 2, k = a + b * v, f = weight[i] * step / 2 * k * expl(-(a * v + b * v * v / 2));
+      w[0] += f * (1 - v);
+      w[1] += f * v;
+    }
+    u += step;
+  }
+}
+
+static void check(double a, double a1, double bound) {
+  const TcSegment s = tc_segment(a, a1);
+  long double w[2];
+  reference(a, a1, w);
+  const double e0 = w[0] > 0 ? (double)fabsl((long double)s.w0 / w[0] - 1) : s.w0;
+  const double e1 = w[1] > 0 ? (double)fabsl((long double)s.w1 / w[1] - 1) : s.w1;
+  if (e0 > bound || e1 > bound) fail_msg("a=%a a1=%a: w0 off by %g, w1 by %g", a, a1, e0, e1);
+}
+
+static void agrees_with_quadrature(void **state) {
+  (void)state;
+  uint64_t seed = 3;
+  for (int i = 0; i < 4000; ++i) {
+    const double a = pow(10, -6 + 8.5 * uniform(&seed)), a1 = pow(10, -6 + 8.5 * uniform(&seed));
+    check(a, a1, 4e-15);
+    check(a, a * (1 + 1e-7 * (uniform(&seed) - 0.5)), 4e-15); /* nearly constant extinction */
+    check(a, 0, 4e-15);
+    check(0, a, 4e-15);
+    const double x = 2 * uniform(&seed); /* around T = 1, where the formulas change */
+    check(x, 2 - x, 4e-15);
+    check(x, nextafter(2 - x, 0), 4e-15);
+    check(x, nextafter(2 - x, 3), 4e-15);
+  }
+}
+
+static void stays_in_range_at_extremes(void **state) {
+  (void)state;
+  static const double values[] = {0,    5e-324, 1e-308, 1e-300, 1e-160, 1e-20, 1e-8, 0.1,  0.5,   1,        2,
+                                  10,   700,    745,    746,    1e4,    1e8,   1e16, 1e30, 1e160, 1e300, 1.7e308, INFINITY};
+  enum { N = sizeof values / sizeof *values };
+  for (int i = 0; i < N; ++i) {
+    for (int j = 0; j < N; ++j) {
+      const TcSegment s = tc_segment(values[i], values[j]);
+      assert_true(s.w0 >= 0 && s.w0 <= 1 && s.w1 >= 0 && s.w1 <= 1);
+      assert_true(s.alpha >= 0 && s.alpha <= 1 && s.transmittance >= 0 && s.transmittance <= 1);
+      assert_true(fabs(s.w0 + s.w1 - s.alpha) <= 1e-15 * s.alpha + 5e-324);
+    }
+  }
+}
+
+static void thin_segments_keep_relative_accuracy(void **state) {
+  (void)state;
+  for (double t = 1e-300; t < 1e-10; t *= 1e10) { /* w0 → (2a + a1)/6, w1 → (a + 2a1)/6 up to terms in a² */
+    const TcSegment s = tc_segment(t, 3 * t);
+    assert_true(fabs(s.w0 / (5 * t / 6) - 1) < 1e-15 + 10 * t);
+    assert_true(fabs(s.w1 / (7 * t / 6) - 1) < 1e-15 + 10 * t);
+    assert_true(fabs(s.alpha / (2 * t) - 1) < 1e-15 + 10 * t);
+  }
+}
+
+static TcPieces pieces_of(Fixture *fixture, TetcastTransferFunction **transfer) {
+  *transfer = transfer_of(fixture->context, 3);
+  return (*transfer)->pieces;
+}
+
+/* One segment cut into a thousand gives what the whole gives, also across knots and steps, in both directions. */
+static void cutting_changes_nothing(void **state) {
+  (void)state;
+  Fixture fixture;
+  assert_int_equal(fixture_begin(&fixture, 1, 0), TETCAST_OK);
+  TetcastTransferFunction *transfer;
+  const TcPieces pieces = pieces_of(&fixture, &transfer);
+  for (int reverse = 0; reverse < 2; ++reverse) {
+    const double from = reverse ? 1.1 : -0.1, to = reverse ? -0.1 : 1.1;
+    TcLight whole = tc_light_begin(), cut = tc_light_begin();
+    tc_light_add(&whole, &pieces, 0.7, from, to);
+    double s = from;
+    for (int i = 1; i <= 1000; ++i) {
+      const double next = from + (to - from) * i / 1000;
+      tc_light_add(&cut, &pieces, 0.7 * fabs(next - s) / 1.2, s, next);
+      s = next;
+    }
+    double a[4], b[4];
+    tc_light_end(&whole, a);
+    tc_light_end(&cut, b);
+    for (int k = 0; k < 4; ++k) assert_true(fabs(a[k] - b[k]) < 2e-14);
+    assert_true(a[3] > 0.5);
+  }
+  tetcast_transfer_function_destroy(&transfer);
+  fixture_end(&fixture);
+}
+
+/* 10⁵ equal segments: roundings all point the same way, and still do not pile up. */
+static void many_segments_do_not_drift(void **state) {
+  (void)state;
+  Fixture fixture;
+  assert_int_equal(fixture_begin(&fixture, 1, 0), TETCAST_OK);
+  const double depth[] = {1e-15, 1e-3, 1.7, 20};
+  for (int i = 0; i < 4; ++i) {
+    TetcastTransferFunction *transfer = gray_of(fixture.context, depth[i]);
+    TcLight light = tc_light_begin();
+    for (int j = 0; j < 100000; ++j) tc_light_add_constant(&light, &transfer->pieces, 1e-5, 0.5);
+    double rgba[4];
+    tc_light_end(&light, rgba);
+    for (int k = 0; k < 4; ++k) assert_true(fabs(rgba[k] / -expm1(-depth[i]) - 1) < 1e-12);
+    tetcast_transfer_function_destroy(&transfer);
+  }
+  fixture_end(&fixture);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(agrees_with_quadrature),        cmocka_unit_test(stays_in_range_at_extremes),
+    cmocka_unit_test(thin_segments_keep_relative_accuracy), cmocka_unit_test(cutting_changes_nothing),
+    cmocka_unit_test(many_segments_do_not_drift),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
