@@ -107,14 +107,15 @@ typedef struct Tube {
 static void add_tube(Tube tube) {
   const int first = point_count;
   for (int i = 0; i < tube.n; i++) {
-    const double u = 2 * pi * tube.p * i / tube.n, v = 2 * pi * tube.q * i / tube.n, r = tube.ring + tube.winding * cos(v);
+    const double u = 2 * pi * tube.p * i / tube.n, v = 2 * pi * tube.q * i / tube.n;
+    const double r = tube.ring + tube.winding * cos(v);
     /* normal of the torus that the curve lies on, tangent of the curve, and what is perpendicular to both */
     const double normal[3] = {cos(v) * cos(u), cos(v) * sin(u), sin(v)};
-    double t[3] = {-r * tube.p * sin(u) - tube.winding * tube.q * sin(v) * cos(u), r * tube.p * cos(u) - tube.winding * tube.q * sin(v) * sin(u),
-                   tube.winding * tube.q * cos(v)};
-    const double length = sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
-    const double side[3] = {
-      (t[1] * normal[2] - t[2] * normal[1]) / length, (t[2] * normal[0] - t[0] * normal[2]) / length,
+    const double du = r * tube.p, dv = tube.winding * tube.q;
+    const double t[3] = {-du * sin(u) - dv * sin(v) * cos(u), du * cos(u) - dv * sin(v) * sin(u), dv * cos(v)};
+    const double length = sqrt(du * du + dv * dv);
+    const double side[3] = {(t[1] * normal[2] - t[2] * normal[1]) / length,
+                            (t[2] * normal[0] - t[0] * normal[2]) / length,
                             (t[0] * normal[1] - t[1] * normal[0]) / length};
     for (int j = 0; j < tube.m; j++) {
       const double w = 2 * pi * j / tube.m;

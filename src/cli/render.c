@@ -197,7 +197,11 @@ static int write_files(Run *run) {
 }
 
 static int perform(Run *run) {
+  cli_interrupt_hold(true); /* checks put files in folders for a moment */
   int code = check(run);
+  cli_interrupt_hold(false);
+  if (cli_interrupted())
+    code = CLI_FAILED;
   if (code == CLI_DONE)
     code = load(run);
   if (code == CLI_DONE && !view_complete(&run->options, run->stats.volume.bounds, &run->camera))

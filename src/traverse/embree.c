@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#if __has_include(<embree4/rtcore.h>) && !defined(TETCAST_EMBREE3)
+#if TETCAST_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
 #else
 #include <embree3/rtcore.h>

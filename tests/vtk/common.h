@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the tests of reading and writing share: a context that remembers what it was told, and files that come and go. */
+/* What the tests of reading and writing share: a context that remembers what it was told, and files that come and go.
+ */
 #ifndef TEST_VTK_COMMON_H
 #define TEST_VTK_COMMON_H
 
@@ -118,7 +119,8 @@ static inline const char *data_path(Fixture *fixture, const char *name) {
 }
 
 /* Calls `use` for each file in a folder of the data whose name ends so. Returns how many there were. */
-static inline int each_file(Fixture *fixture, const char *folder, const char *ending, void (*use)(Fixture *, const char *)) {
+static inline int each_file(Fixture *fixture, const char *folder, const char *ending,
+                            void (*use)(Fixture *, const char *)) {
   char path[1024], base[512];
   snprintf(base, sizeof base, "%s", data_path(fixture, folder));
   int count = 0;

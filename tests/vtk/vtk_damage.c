@@ -4,15 +4,19 @@
 
 #include "common.h"
 
-#define POINTS "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\n"
+#define POINTS                                                                                                         \
+  "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\n"
 #define CELL "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"
-#define XML(points, cells, body)                                                                             \
-  "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\"><UnstructuredGrid>"        \
+#define XML(points, cells, body)                                                                                       \
+  "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\"><UnstructuredGrid>"                  \
   "<Piece NumberOfPoints=\"" points "\" NumberOfCells=\"" cells "\">" body "</Piece></UnstructuredGrid></VTKFile>"
-#define ARRAY(type, name, values) "<DataArray type=\"" type "\" Name=\"" name "\" format=\"ascii\">" values "</DataArray>"
-#define XYZ(values) "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">" values "</DataArray></Points>"
-#define CELLS(connectivity, offsets, types) \
-  "<Cells>" ARRAY("Int32", "connectivity", connectivity) ARRAY("Int32", "offsets", offsets) ARRAY("UInt8", "types", types) "</Cells>"
+#define ARRAY(type, name, values)                                                                                      \
+  "<DataArray type=\"" type "\" Name=\"" name "\" format=\"ascii\">" values "</DataArray>"
+#define XYZ(values)                                                                                                    \
+  "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">" values "</DataArray></Points>"
+#define CELLS(connectivity, offsets, types)                                                                            \
+  "<Cells>" ARRAY("Int32", "connectivity", connectivity) ARRAY("Int32", "offsets", offsets)                            \
+      ARRAY("UInt8", "types", types) "</Cells>"
 #define FOUR XYZ("0 0 0 1 0 0 0 1 0 0 0 1")
 
 static void test_defects(void **state) {
@@ -20,59 +24,75 @@ static void test_defects(void **state) {
   static const struct {
     const char *name, *text, *words;
   } cases[] = {
-    {"empty.vtu", "", "empty"},
-    {"picture.png", "\x89PNG\r\n", "not a file of a volume mesh"},
-    {"text.vtu", "hello\n", "XML"},
-    {"text.vtk", "hello\n", "header"},
-    {"header.vtk", "# vtk DataFile Version 3.0\nt\nASCII\n", "truncated"},
-    {"polydata.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 0 float\n", "POLYDATA, not a volume mesh"},
-    {"image.vtu", "<VTKFile type=\"ImageData\"></VTKFile>", "ImageData, not a volume mesh"},
-    {"surface.stl", "solid a\nfacet normal 0 0 1\n", "STL data, not a volume mesh"},
-    {"nopoints.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\n" CELL, "no points"},
-    {"nocells.vtk", POINTS, "no cells"},
-    {"notypes.vtk", POINTS "CELLS 1 5\n4 0 1 2 3\n", "CELL_TYPES"},
-    {"types.vtk", POINTS "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 2\n10 10\n", "CELL_TYPES of 2 cells"},
-    {"unknown.vtk", POINTS "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n77777\n", "cell 0: there is no cell type 77777"},
-    {"unknown2.vtk", POINTS "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n200\n", "cell 0: there is no cell type 200"},
-    {"surface.vtk", POINTS "CELLS 2 8\n3 0 1 2\n3 1 2 3\nCELL_TYPES 2\n5 5\n", "no volumetric cells, only 2 × triangle"},
-    {"short.vtk", POINTS "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n10\n", "cell 0: a tetrahedron has 4 points, not 3"},
-    {"range.vtk", POINTS "CELLS 1 5\n4 0 1 2 5\nCELL_TYPES 1\n10\n", "cell 0: point index 5 is out of range"},
-    {"negative.vtk", POINTS "CELLS 1 5\n4 0 1 -2 3\nCELL_TYPES 1\n10\n", "cell 0: point index -2 is out of range"},
-    {"stream.vtk", POINTS "CELLS 1 5\n400 0 1 2 3\nCELL_TYPES 1\n10\n", "cell 0 does not fit"},
-    {"stream2.vtk", POINTS "CELLS 1 5\n-4 0 1 2 3\nCELL_TYPES 1\n10\n", "cell 0 does not fit"},
-    {"count.vtk", POINTS "CELLS 9999999999 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n", "can't hold"},
-    {"count2.vtk", POINTS "CELLS -1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n", "can't hold"},
-    {"word.vtk", POINTS "CELLZ 1 5\n", "cellz"},
-    {"values.vtk", POINTS CELL "POINT_DATA 4\nSCALARS a float\nLOOKUP_TABLE default\n1 2 3 4\n", "4 points, but there are 5"},
-    {"length.vtk", POINTS CELL "POINT_DATA 5\nFIELD f 1\na 1 3 float\n1 2 3\n", "'a' has 3 values for 5 points"},
-    {"cells.vtk", POINTS CELL "CELL_DATA 1\nFIELD f 1\nb 1 2 float\n1 2\n", "'b' has 2 values for 1 cells"},
-    {"few.vtk", POINTS CELL "POINT_DATA 5\nSCALARS a float\nLOOKUP_TABLE default\n1 2 3 4\n", "ascii"},
-    {"minus.vtk", POINTS CELL "POINT_DATA 5\nSCALARS a float -3\nLOOKUP_TABLE default\n1 2 3 4 5\n", "more than the file can hold"},
-    {"minus2.vtk", POINTS CELL "POINT_DATA 5\nFIELD f 1\na -1 5 float\n1 2 3 4 5\n", "FIELD claims a count of -1"},
-    {"minus3.vtk", POINTS CELL "POINT_DATA 5\nFIELD f 1\na 1 -5 float\n1 2 3 4 5\n", "FIELD claims a count of -5"},
-    {"minus4.vtk", POINTS CELL "POINT_DATA 5\nLOOKUP_TABLE t -4\n", "LOOKUP_TABLE claims a count of -4"},
-    {"type.vtk", POINTS CELL "POINT_DATA 5\nVECTORS a frog\n1 2 3 4 5\n", "frog"},
-    {"keyword.vtk", POINTS CELL "POINT_DATA 5\nSKALARS a float\n1 2 3 4 5\n", "skalars"},
-    {"faces.vtk", POINTS "CELLS 1 8\n7 4 3 0 1 2 3 0\nCELL_TYPES 1\n42\n", "cell 0: the list of the polyhedron's faces"},
-    {"lagrange.vtk", POINTS "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n71\n", "Lagrange tetrahedron, which can't be cut"},
-    {"few.vtu", XML("4", "1", XYZ("0 0 0 1 0 0") CELLS("0 1 2 3", "4", "10")), "too short"},
-    {"inf.vtu", XML("4", "1", "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"binary\">"
-                    "MAAAAAAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIB/AAAAAAAAAAAAAAAAAACAPw==</DataArray></Points>"
-                    CELLS("0 1 2 3", "4", "10")), "point 2: coordinate y is inf"},
-    {"offsets.vtu", XML("4", "1", FOUR CELLS("0 1 2 3", "-4", "10")), "offsets"},
-    {"offsets2.vtu", XML("4", "1", FOUR CELLS("0 1 2 3", "400", "10")), "connectivity"},
-    {"range.vtu", XML("4", "1", FOUR CELLS("0 1 2 4", "4", "10")), "cell 0: point index 4 is out of range (there are 4 points)"},
-    {"line.vtu", XML("4", "1", FOUR CELLS("0 1", "2", "3")), "only 1 × line"},
-    {"none.vtu", XML("4", "0", FOUR CELLS("", "", "")), "no cells"},
-    {"nothing.vtu", XML("0", "0", ""), ""},
-    {"huge.vtu", XML("4", "99999999999", FOUR CELLS("0 1 2 3", "4", "10")), "99999999999 cells, which the file can't hold"},
-    {"huge2.vtu", XML("99999999999", "1", FOUR CELLS("0 1 2 3", "4", "10")), "99999999999 points"},
-    {"minus.vtu", XML("4", "-1", FOUR CELLS("0 1 2 3", "4", "10")), "-1 cells, which the file can't hold"},
-    {"open.vtu", "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid>", "XML"},
-    {"base64.vtu", XML("4", "1", "<PointData><DataArray type=\"Float32\" Name=\"a\" format=\"binary\">EAAAAAA!AAAAAAAAAAAAAAAAAA==</DataArray>"
-                       "</PointData>" FOUR CELLS("0 1 2 3", "4", "10")), "'a'"},
-    {"pieces.pvtu", "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\"><PUnstructuredGrid><PPoints><PDataArray type=\"Float32\" "
-                    "NumberOfComponents=\"3\"/></PPoints><Piece Source=\"gone.vtu\"/></PUnstructuredGrid></VTKFile>", "piece 0"},
+      {"empty.vtu", "", "empty"},
+      {"picture.png", "\x89PNG\r\n", "not a file of a volume mesh"},
+      {"text.vtu", "hello\n", "XML"},
+      {"text.vtk", "hello\n", "header"},
+      {"header.vtk", "# vtk DataFile Version 3.0\nt\nASCII\n", "truncated"},
+      {"polydata.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 0 float\n",
+       "POLYDATA, not a volume mesh"},
+      {"image.vtu", "<VTKFile type=\"ImageData\"></VTKFile>", "ImageData, not a volume mesh"},
+      {"surface.stl", "solid a\nfacet normal 0 0 1\n", "STL data, not a volume mesh"},
+      {"nopoints.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\n" CELL, "no points"},
+      {"nocells.vtk", POINTS, "no cells"},
+      {"notypes.vtk", POINTS "CELLS 1 5\n4 0 1 2 3\n", "CELL_TYPES"},
+      {"types.vtk", POINTS "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 2\n10 10\n", "CELL_TYPES of 2 cells"},
+      {"unknown.vtk", POINTS "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n77777\n", "cell 0: there is no cell type 77777"},
+      {"unknown2.vtk", POINTS "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n200\n", "cell 0: there is no cell type 200"},
+      {"surface.vtk", POINTS "CELLS 2 8\n3 0 1 2\n3 1 2 3\nCELL_TYPES 2\n5 5\n",
+       "no volumetric cells, only 2 × triangle"},
+      {"short.vtk", POINTS "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n10\n", "cell 0: a tetrahedron has 4 points, not 3"},
+      {"range.vtk", POINTS "CELLS 1 5\n4 0 1 2 5\nCELL_TYPES 1\n10\n", "cell 0: point index 5 is out of range"},
+      {"negative.vtk", POINTS "CELLS 1 5\n4 0 1 -2 3\nCELL_TYPES 1\n10\n", "cell 0: point index -2 is out of range"},
+      {"stream.vtk", POINTS "CELLS 1 5\n400 0 1 2 3\nCELL_TYPES 1\n10\n", "cell 0 does not fit"},
+      {"stream2.vtk", POINTS "CELLS 1 5\n-4 0 1 2 3\nCELL_TYPES 1\n10\n", "cell 0 does not fit"},
+      {"count.vtk", POINTS "CELLS 9999999999 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n", "can't hold"},
+      {"count2.vtk", POINTS "CELLS -1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n", "can't hold"},
+      {"word.vtk", POINTS "CELLZ 1 5\n", "cellz"},
+      {"values.vtk", POINTS CELL "POINT_DATA 4\nSCALARS a float\nLOOKUP_TABLE default\n1 2 3 4\n",
+       "4 points, but there are 5"},
+      {"length.vtk", POINTS CELL "POINT_DATA 5\nFIELD f 1\na 1 3 float\n1 2 3\n", "'a' has 3 values for 5 points"},
+      {"cells.vtk", POINTS CELL "CELL_DATA 1\nFIELD f 1\nb 1 2 float\n1 2\n", "'b' has 2 values for 1 cells"},
+      {"few.vtk", POINTS CELL "POINT_DATA 5\nSCALARS a float\nLOOKUP_TABLE default\n1 2 3 4\n", "ascii"},
+      {"minus.vtk", POINTS CELL "POINT_DATA 5\nSCALARS a float -3\nLOOKUP_TABLE default\n1 2 3 4 5\n",
+       "more than the file can hold"},
+      {"minus2.vtk", POINTS CELL "POINT_DATA 5\nFIELD f 1\na -1 5 float\n1 2 3 4 5\n", "FIELD claims a count of -1"},
+      {"minus3.vtk", POINTS CELL "POINT_DATA 5\nFIELD f 1\na 1 -5 float\n1 2 3 4 5\n", "FIELD claims a count of -5"},
+      {"minus4.vtk", POINTS CELL "POINT_DATA 5\nLOOKUP_TABLE t -4\n", "LOOKUP_TABLE claims a count of -4"},
+      {"type.vtk", POINTS CELL "POINT_DATA 5\nVECTORS a frog\n1 2 3 4 5\n", "frog"},
+      {"keyword.vtk", POINTS CELL "POINT_DATA 5\nSKALARS a float\n1 2 3 4 5\n", "skalars"},
+      {"faces.vtk", POINTS "CELLS 1 8\n7 4 3 0 1 2 3 0\nCELL_TYPES 1\n42\n",
+       "cell 0: the list of the polyhedron's faces"},
+      {"lagrange.vtk", POINTS "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n71\n", "Lagrange tetrahedron, which can't be cut"},
+      {"few.vtu", XML("4", "1", XYZ("0 0 0 1 0 0") CELLS("0 1 2 3", "4", "10")), "too short"},
+      {"inf.vtu",
+       XML("4", "1",
+           "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"binary\">"
+           "MAAAAAAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIB/AAAAAAAAAAAAAAAAAACAPw==</DataArray></Points>" CELLS(
+               "0 1 2 3", "4", "10")),
+       "point 2: coordinate y is inf"},
+      {"offsets.vtu", XML("4", "1", FOUR CELLS("0 1 2 3", "-4", "10")), "offsets"},
+      {"offsets2.vtu", XML("4", "1", FOUR CELLS("0 1 2 3", "400", "10")), "connectivity"},
+      {"range.vtu", XML("4", "1", FOUR CELLS("0 1 2 4", "4", "10")),
+       "cell 0: point index 4 is out of range (there are 4 points)"},
+      {"line.vtu", XML("4", "1", FOUR CELLS("0 1", "2", "3")), "only 1 × line"},
+      {"none.vtu", XML("4", "0", FOUR CELLS("", "", "")), "no cells"},
+      {"nothing.vtu", XML("0", "0", ""), ""},
+      {"huge.vtu", XML("4", "99999999999", FOUR CELLS("0 1 2 3", "4", "10")),
+       "99999999999 cells, which the file can't hold"},
+      {"huge2.vtu", XML("99999999999", "1", FOUR CELLS("0 1 2 3", "4", "10")), "99999999999 points"},
+      {"minus.vtu", XML("4", "-1", FOUR CELLS("0 1 2 3", "4", "10")), "-1 cells, which the file can't hold"},
+      {"open.vtu", "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid>", "XML"},
+      {"base64.vtu",
+       XML("4", "1",
+           "<PointData><DataArray type=\"Float32\" Name=\"a\" "
+           "format=\"binary\">EAAAAAA!AAAAAAAAAAAAAAAAAA==</DataArray>"
+           "</PointData>" FOUR CELLS("0 1 2 3", "4", "10")),
+       "'a'"},
+      {"pieces.pvtu",
+       "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\"><PUnstructuredGrid><PPoints><PDataArray type=\"Float32\" "
+       "NumberOfComponents=\"3\"/></PPoints><Piece Source=\"gone.vtu\"/></PUnstructuredGrid></VTKFile>",
+       "piece 0"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     const TetcastStatus status = strstr(cases[i].name, "lagrange") ? TETCAST_ERROR_UNSUPPORTED : TETCAST_ERROR_DATA;
@@ -89,7 +109,8 @@ static void test_defects(void **state) {
 /* A cell with more points than its type has is read, with a warning. */
 static void test_oversized_cells(void **state) {
   Fixture *fixture = *state;
-  TetcastDataset *dataset = read_good(fixture, text_file(fixture, "a.vtk", POINTS "CELLS 1 6\n5 0 1 2 3 4\nCELL_TYPES 1\n10\n"));
+  TetcastDataset *dataset =
+      read_good(fixture, text_file(fixture, "a.vtk", POINTS "CELLS 1 6\n5 0 1 2 3 4\nCELL_TYPES 1\n10\n"));
   assert_int_equal(fixture->warnings, 1);
   TetcastMesh *mesh;
   assert_int_equal(tetcast_dataset_mesh(dataset, &mesh), TETCAST_OK);
@@ -124,10 +145,10 @@ static void test_silence(void **state) {
   dup2(file, 1);
   dup2(file, 2);
   TetcastDataset *dataset;
-  const TetcastStatus first =
-    tetcast_dataset_read(fixture->context, text_file(fixture, "a.vtu", XML("4", "1", FOUR CELLS("0 1 2", "4", "10"))), &dataset);
+  const TetcastStatus first = tetcast_dataset_read(
+      fixture->context, text_file(fixture, "a.vtu", XML("4", "1", FOUR CELLS("0 1 2", "4", "10"))), &dataset);
   const TetcastStatus second =
-    tetcast_dataset_read(fixture->context, text_file(fixture, "a.vtk", POINTS "CELLS 1 5\n4 0 1 2 x\n"), &dataset);
+      tetcast_dataset_read(fixture->context, text_file(fixture, "a.vtk", POINTS "CELLS 1 5\n4 0 1 2 x\n"), &dataset);
   fflush(stdout);
   fflush(stderr);
   dup2(out, 1);
@@ -163,10 +184,18 @@ static TetcastStatus use(Fixture *fixture, const char *path) {
 }
 
 static const char *const samples[] = {
-  "encodings/ascii.vtu",           "encodings/appraw_le_uint32_zlib.vtu", "encodings/appraw_be_uint64_none.vtu",
-  "encodings/app64_le_uint32_none.vtu", "encodings/inline64_be_uint64_lz4.vtu", "encodings/appraw_le_uint32_lzma.vtu",
-  "encodings/legacy42_ascii.vtk",  "encodings/legacy42_binary.vtk",       "encodings/legacy51_ascii.vtk",
-  "encodings/legacy51_binary.vtk", "cells/polyhedron2pieces.vtu",         "cells/supportedElementsAsVTKPolyhedra.vtk",
+    "encodings/ascii.vtu",
+    "encodings/appraw_le_uint32_zlib.vtu",
+    "encodings/appraw_be_uint64_none.vtu",
+    "encodings/app64_le_uint32_none.vtu",
+    "encodings/inline64_be_uint64_lz4.vtu",
+    "encodings/appraw_le_uint32_lzma.vtu",
+    "encodings/legacy42_ascii.vtk",
+    "encodings/legacy42_binary.vtk",
+    "encodings/legacy51_ascii.vtk",
+    "encodings/legacy51_binary.vtk",
+    "cells/polyhedron2pieces.vtu",
+    "cells/supportedElementsAsVTKPolyhedra.vtk",
 };
 enum { SAMPLES = sizeof samples / sizeof *samples };
 
@@ -227,7 +256,8 @@ static void test_changed_digits(void **state) {
       memcpy(changed, bytes, size);
       for (int j = 0; j < 3; ++j) {
         size_t at = next_random(&seed) % size;
-        for (int tries = 0; tries < 5000 && (bytes[at] < '0' || bytes[at] > '9'); ++tries) at = next_random(&seed) % size;
+        for (int tries = 0; tries < 5000 && (bytes[at] < '0' || bytes[at] > '9'); ++tries)
+          at = next_random(&seed) % size;
         changed[at] = "0123456789-"[next_random(&seed) % 11];
       }
       use(fixture, file_of(fixture, strstr(samples[i], ".vtk") ? "digit.vtk" : "digit.vtu", changed, size));
@@ -239,8 +269,8 @@ static void test_changed_digits(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    TEST(test_defects),    TEST(test_oversized_cells), TEST(test_arguments),      TEST(test_silence),
-    TEST(test_truncation), TEST(test_flipped_bits),    TEST(test_changed_digits),
+      TEST(test_defects),    TEST(test_oversized_cells), TEST(test_arguments),      TEST(test_silence),
+      TEST(test_truncation), TEST(test_flipped_bits),    TEST(test_changed_digits),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,22 +7,22 @@
 
 /* Two cubes side by side, a tetrahedron on the second, and a triangle and a vertex that are no volume. */
 static const char mixed[] =
-  "# vtk DataFile Version 3.0\nmixed\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 13 double\n"
-  "0 0 0  1 0 0  1 1 0  0 1 0  0 0 1  1 0 1  1 1 1  0 1 1  2 0 0  2 1 0  2 0 1  2 1 1  3 0 0\n"
-  "CELLS 5 29\n"
-  "3 0 1 2\n"
-  "8 0 1 2 3 4 5 6 7\n"
-  "4 8 9 10 12\n"
-  "1 3\n"
-  "8 1 8 9 2 5 10 11 6\n"
-  "CELL_TYPES 5\n5 12 10 1 12\n"
-  "CELL_DATA 5\nSCALARS part int\nLOOKUP_TABLE default\n10 11 12 13 14\n"
-  "VECTORS flow float\n0 0 0  3 4 0  0 0 2  0 0 0  1e30 0 0\n"
-  "POINT_DATA 13\nFIELD FieldData 4\n"
-  "flow 1 13 double\n0 1 2 3 4 5 6 7 8 9 10 11 12\n"
-  "small 1 13 unsigned_char\n0 1 2 3 4 5 6 7 8 9 10 11 255\n"
-  "pair 2 13 short\n0 -1 1 -2 2 -3 3 -4 4 -5 5 -6 6 -7 7 -8 8 -9 9 -10 10 -11 11 -12 12 -13\n"
-  "pair:mag 1 13 float\n1 1 1 1 1 1 1 1 1 1 1 1 1\n";
+    "# vtk DataFile Version 3.0\nmixed\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 13 double\n"
+    "0 0 0  1 0 0  1 1 0  0 1 0  0 0 1  1 0 1  1 1 1  0 1 1  2 0 0  2 1 0  2 0 1  2 1 1  3 0 0\n"
+    "CELLS 5 29\n"
+    "3 0 1 2\n"
+    "8 0 1 2 3 4 5 6 7\n"
+    "4 8 9 10 12\n"
+    "1 3\n"
+    "8 1 8 9 2 5 10 11 6\n"
+    "CELL_TYPES 5\n5 12 10 1 12\n"
+    "CELL_DATA 5\nSCALARS part int\nLOOKUP_TABLE default\n10 11 12 13 14\n"
+    "VECTORS flow float\n0 0 0  3 4 0  0 0 2  0 0 0  1e30 0 0\n"
+    "POINT_DATA 13\nFIELD FieldData 4\n"
+    "flow 1 13 double\n0 1 2 3 4 5 6 7 8 9 10 11 12\n"
+    "small 1 13 unsigned_char\n0 1 2 3 4 5 6 7 8 9 10 11 255\n"
+    "pair 2 13 short\n0 -1 1 -2 2 -3 3 -4 4 -5 5 -6 6 -7 7 -8 8 -9 9 -10 10 -11 11 -12 12 -13\n"
+    "pair:mag 1 13 float\n1 1 1 1 1 1 1 1 1 1 1 1 1\n";
 
 static void test_mixed_cells(void **state) {
   Fixture *fixture = *state;
@@ -46,8 +46,8 @@ static void test_mixed_cells(void **state) {
   assert_true(fabs(health.volume - 2 - 1.0 / 6) < 1e-12);
   assert_int_equal(health.inverted_cells, 0);
   assert_int_equal(health.nonmanifold_faces, 0);
-  /* The cubes agree about the diagonal between them: 10 faces of 2 triangles. The tetrahedron adds 4 faces, and hides two
-   * triangles if the cube's diagonal is its own. */
+  /* The cubes agree about the diagonal between them: 10 faces of 2 triangles. The tetrahedron adds 4 faces, and hides
+   * two triangles if the cube's diagonal is its own. */
   assert_int_equal(health.components, health.boundary_faces == 22 ? 1 : 2);
   assert_true(health.boundary_faces == 22 || health.boundary_faces == 24);
 
@@ -76,8 +76,8 @@ static void test_mixed_cells(void **state) {
   tetcast_dataset_destroy(NULL);
 }
 
-static void assert_field(const TetcastDataset *dataset, const char *selector, const char *name, TetcastAssociation association,
-                         int64_t i, double value) {
+static void assert_field(const TetcastDataset *dataset, const char *selector, const char *name,
+                         TetcastAssociation association, int64_t i, double value) {
   TetcastField *field = NULL;
   const char *again = NULL;
   assert_int_equal(tetcast_dataset_field(dataset, selector, &field, &again), TETCAST_OK);
@@ -104,17 +104,18 @@ static void test_selectors(void **state) {
   assert_false(tetcast_dataset_array(dataset, 6, &array));
   assert_false(tetcast_dataset_array(dataset, -1, &array));
 
-  assert_field(dataset, NULL, "part", TETCAST_CELL, 0, 11);            /* the active one */
-  assert_field(dataset, "flow", "flow", TETCAST_POINT, 12, 12);        /* points before cells */
+  assert_field(dataset, NULL, "part", TETCAST_CELL, 0, 11);     /* the active one */
+  assert_field(dataset, "flow", "flow", TETCAST_POINT, 12, 12); /* points before cells */
   assert_field(dataset, "flow:mag", "flow:mag", TETCAST_POINT, 3, 3);
   assert_field(dataset, "small", "small", TETCAST_POINT, 12, 255);
-  assert_field(dataset, "pair", "pair", TETCAST_POINT, 3, 5);          /* several components: their length */
-  assert_field(dataset, "pair:mag", "pair:mag", TETCAST_POINT, 3, 1);  /* a whole name first */
+  assert_field(dataset, "pair", "pair", TETCAST_POINT, 3, 5);         /* several components: their length */
+  assert_field(dataset, "pair:mag", "pair:mag", TETCAST_POINT, 3, 1); /* a whole name first */
   assert_field(dataset, "pair:0", "pair:0", TETCAST_POINT, 3, 3);
   assert_field(dataset, "pair:1", "pair:1", TETCAST_POINT, 3, -4);
   assert_field(dataset, "pair:mag:0", "pair:mag:0", TETCAST_POINT, 3, 1);
 
-  static const char *const wrong[] = {"nothing", "", "pair:2", "pair:-1", "pair:", "pair:0x", "pair:99999999999", ":mag", "Flow"};
+  static const char *const wrong[] = {"nothing",          "",     "pair:2", "pair:-1", "pair:", "pair:0x",
+                                      "pair:99999999999", ":mag", "Flow"};
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
     TetcastField *field = (TetcastField *)fixture;
     fixture->errors = 0;
@@ -122,19 +123,24 @@ static void test_selectors(void **state) {
     assert_null(field);
     assert_complaint(fixture, "mixed.vtk", "there are: ");
   }
-  assert_non_null(strstr(fixture->message, "flow, small, pair (2 components), pair:mag, part (cells), flow (cells, 3 components)"));
+  assert_non_null(
+      strstr(fixture->message, "flow, small, pair (2 components), pair:mag, part (cells), flow (cells, 3 components)"));
   tetcast_dataset_destroy(&dataset);
 }
 
-#define TETRAHEDRON "<Points><DataArray type='Float32' NumberOfComponents='3' format='ascii'>0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points>" \
-  "<Cells><DataArray type='Int32' Name='connectivity' format='ascii'>0 1 2 3</DataArray>" \
-  "<DataArray type='Int32' Name='offsets' format='ascii'>4</DataArray>" \
+#define TETRAHEDRON                                                                                                    \
+  "<Points><DataArray type='Float32' NumberOfComponents='3' format='ascii'>0 0 0 1 0 0 0 1 0 0 0 "                     \
+  "1</DataArray></Points>"                                                                                             \
+  "<Cells><DataArray type='Int32' Name='connectivity' format='ascii'>0 1 2 3</DataArray>"                              \
+  "<DataArray type='Int32' Name='offsets' format='ascii'>4</DataArray>"                                                \
   "<DataArray type='UInt8' Name='types' format='ascii'>10</DataArray></Cells>"
 
 static const char *xml(const char *attributes) {
   static char text[4096];
-  snprintf(text, sizeof text, "<VTKFile type='UnstructuredGrid' version='0.1' byte_order='LittleEndian'><UnstructuredGrid>"
-           "<Piece NumberOfPoints='4' NumberOfCells='1'>%s" TETRAHEDRON "</Piece></UnstructuredGrid></VTKFile>", attributes);
+  snprintf(text, sizeof text,
+           "<VTKFile type='UnstructuredGrid' version='0.1' byte_order='LittleEndian'><UnstructuredGrid>"
+           "<Piece NumberOfPoints='4' NumberOfCells='1'>%s" TETRAHEDRON "</Piece></UnstructuredGrid></VTKFile>",
+           attributes);
   return text;
 }
 
@@ -144,19 +150,28 @@ static void test_default_field(void **state) {
   static const struct {
     const char *attributes, *name;
   } cases[] = {
-    {"<PointData><DataArray type='Float64' Name='v' NumberOfComponents='2' format='ascii'>3 4 3 4 3 4 3 4</DataArray>"
-     "<DataArray type='Float64' Name='s' format='ascii'>5 5 5 5</DataArray></PointData>", "s"},
-    {"<PointData><DataArray type='Float64' Name='v' NumberOfComponents='2' format='ascii'>3 4 3 4 3 4 3 4</DataArray></PointData>"
-     "<CellData><DataArray type='Float64' Name='c' format='ascii'>5</DataArray></CellData>", "c"},
-    {"<PointData><DataArray type='Float64' Name='v' NumberOfComponents='2' format='ascii'>3 4 3 4 3 4 3 4</DataArray></PointData>", "v"},
-    {"<PointData Scalars='b'><DataArray type='Int64' Name='a' format='ascii'>1 1 1 1</DataArray>"
-     "<DataArray type='UInt64' Name='b' format='ascii'>5 5 5 5</DataArray></PointData>", "b"},
-    {"<PointData><DataArray type='Int64' Name='a' format='ascii'>1 1 1 1</DataArray></PointData>"
-     "<CellData Scalars='b'><DataArray type='Int8' Name='b' format='ascii'>5</DataArray></CellData>", "b"},
-    {"<PointData GlobalIds='n'><DataArray type='Int64' Name='n' format='ascii'>0 1 2 3</DataArray></PointData>"
-     "<CellData><DataArray type='UInt16' Name='c' format='ascii'>5</DataArray></CellData>", "c"}, /* numbers of points show nothing */
-    {"<PointData><DataArray type='UInt8' Name='vtkGhostType' format='ascii'>0 0 0 0</DataArray>"
-     "<DataArray type='Int16' Name='a' format='ascii'>5 5 5 5</DataArray></PointData>", "a"},
+      {"<PointData><DataArray type='Float64' Name='v' NumberOfComponents='2' format='ascii'>3 4 3 4 3 4 3 4</DataArray>"
+       "<DataArray type='Float64' Name='s' format='ascii'>5 5 5 5</DataArray></PointData>",
+       "s"},
+      {"<PointData><DataArray type='Float64' Name='v' NumberOfComponents='2' format='ascii'>3 4 3 4 3 4 3 "
+       "4</DataArray></PointData>"
+       "<CellData><DataArray type='Float64' Name='c' format='ascii'>5</DataArray></CellData>",
+       "c"},
+      {"<PointData><DataArray type='Float64' Name='v' NumberOfComponents='2' format='ascii'>3 4 3 4 3 4 3 "
+       "4</DataArray></PointData>",
+       "v"},
+      {"<PointData Scalars='b'><DataArray type='Int64' Name='a' format='ascii'>1 1 1 1</DataArray>"
+       "<DataArray type='UInt64' Name='b' format='ascii'>5 5 5 5</DataArray></PointData>",
+       "b"},
+      {"<PointData><DataArray type='Int64' Name='a' format='ascii'>1 1 1 1</DataArray></PointData>"
+       "<CellData Scalars='b'><DataArray type='Int8' Name='b' format='ascii'>5</DataArray></CellData>",
+       "b"},
+      {"<PointData GlobalIds='n'><DataArray type='Int64' Name='n' format='ascii'>0 1 2 3</DataArray></PointData>"
+       "<CellData><DataArray type='UInt16' Name='c' format='ascii'>5</DataArray></CellData>",
+       "c"}, /* numbers of points show nothing */
+      {"<PointData><DataArray type='UInt8' Name='vtkGhostType' format='ascii'>0 0 0 0</DataArray>"
+       "<DataArray type='Int16' Name='a' format='ascii'>5 5 5 5</DataArray></PointData>",
+       "a"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     TetcastDataset *dataset = read_good(fixture, text_file(fixture, "a.vtu", xml(cases[i].attributes)));
@@ -178,8 +193,9 @@ static void test_default_field(void **state) {
 /* The length of a vector whose squares over- or underflow. */
 static void test_magnitude(void **state) {
   Fixture *fixture = *state;
-  const char *path = text_file(fixture, "a.vtu", xml("<PointData><DataArray type='Float64' Name='v' NumberOfComponents='2' "
-                                                     "format='ascii'>3e200 4e200 3e-200 4e-200 0 0 -5 12</DataArray></PointData>"));
+  const char *path = text_file(fixture, "a.vtu",
+                               xml("<PointData><DataArray type='Float64' Name='v' NumberOfComponents='2' "
+                                   "format='ascii'>3e200 4e200 3e-200 4e-200 0 0 -5 12</DataArray></PointData>"));
   TetcastDataset *dataset = read_good(fixture, path);
   TetcastField *field;
   assert_int_equal(tetcast_dataset_field(dataset, "v:mag", &field, NULL), TETCAST_OK);
@@ -194,23 +210,30 @@ static void test_magnitude(void **state) {
 /* Every kind of attribute a legacy file may have, in both of its cell formats. */
 static void test_legacy_attributes(void **state) {
   Fixture *fixture = *state;
-  static const char points[] = "POINTS 4 int\n0 0 0 1 0 0 0 1 0 0 0 1\n\nMETADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\n"
-                               "DATA 2 0 1\n\n";
-  static const char cells[][256] = {"CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n",
-                                    "CELLS 2 4\nOFFSETS vtktypeint64\n0 4\nCONNECTIVITY vtktypeint64\n0 1 2 3\nCELL_TYPES 1\n10\n",
-                                    "CELLS 2 4\nOFFSETS int\n0 4\nCONNECTIVITY int\n0 1 2 3\nCELL_TYPES 1\n10\n"};
+  static const char points[] =
+      "POINTS 4 int\n0 0 0 1 0 0 0 1 0 0 0 1\n\nMETADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\n"
+      "DATA 2 0 1\n\n";
+  static const char cells[][256] = {
+      "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n",
+      "CELLS 2 4\nOFFSETS vtktypeint64\n0 4\nCONNECTIVITY vtktypeint64\n0 1 2 3\nCELL_TYPES 1\n10\n",
+      "CELLS 2 4\nOFFSETS int\n0 4\nCONNECTIVITY int\n0 1 2 3\nCELL_TYPES 1\n10\n"};
   static const char attributes[] =
-    "CELL_DATA 1\nSCALARS cell%20scalar double\nLOOKUP_TABLE mine\n5\nPOINT_DATA 4\nscalars first float 2\nlookup_table default\n"
-    "1 5 1 5 1 5 1 5\nLOOKUP_TABLE mine 2\n0 0 0 1  1 1 1 1\nSCALARS second unsigned_long\nLOOKUP_TABLE default\n5 5 5 5\n"
-    "VECTORS v float\n5 0 0 0 0 5 0 5 0 3 4 0\nNORMALS n float\n0 0 5 0 0 5 0 0 5 0 0 5\nTENSORS t float\n"
-    "5 0 0 0 0 0 0 0 0 5 0 0 0 0 0 0 0 0 5 0 0 0 0 0 0 0 0 5 0 0 0 0 0 0 0 0\nCOLOR_SCALARS c 2\n0 5 0 5 0 5 0 5\n"
-    "TEXTURE_COORDINATES x 2 float\n0 5 0 5 0 5 0 5\nGLOBAL_IDS g vtkIdType\n5 6 7 8\nFIELD FieldData 3\nf 1 4 long\n5 5 5 5\n"
-    "METADATA\nCOMPONENT_NAMES\nf\n\nb 1 4 bit\n1 0 1 0\nNULL_ARRAY\n";
+      "CELL_DATA 1\nSCALARS cell%20scalar double\nLOOKUP_TABLE mine\n5\nPOINT_DATA 4\nscalars first float "
+      "2\nlookup_table default\n"
+      "1 5 1 5 1 5 1 5\nLOOKUP_TABLE mine 2\n0 0 0 1  1 1 1 1\nSCALARS second unsigned_long\nLOOKUP_TABLE default\n5 5 "
+      "5 5\n"
+      "VECTORS v float\n5 0 0 0 0 5 0 5 0 3 4 0\nNORMALS n float\n0 0 5 0 0 5 0 0 5 0 0 5\nTENSORS t float\n"
+      "5 0 0 0 0 0 0 0 0 5 0 0 0 0 0 0 0 0 5 0 0 0 0 0 0 0 0 5 0 0 0 0 0 0 0 0\nCOLOR_SCALARS c 2\n0 5 0 5 0 5 0 5\n"
+      "TEXTURE_COORDINATES x 2 float\n0 5 0 5 0 5 0 5\nGLOBAL_IDS g vtkIdType\n5 6 7 8\nFIELD FieldData 3\nf 1 4 "
+      "long\n5 5 5 5\n"
+      "METADATA\nCOMPONENT_NAMES\nf\n\nb 1 4 bit\n1 0 1 0\nNULL_ARRAY\n";
   static const char *const names[] = {"first", "second", "v", "n", "t", "c", "x", "g", "f", "b", "cell scalar"};
   for (int i = 0; i < 3; ++i) {
     char text[4096];
-    snprintf(text, sizeof text, "# vtk DataFile Version %s\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nFIELD FieldData 1\ntime 1 1 double\n7\n%s%s%s",
-             i ? "5.1" : "3.0", points, cells[i], attributes);
+    snprintf(
+        text, sizeof text,
+        "# vtk DataFile Version %s\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nFIELD FieldData 1\ntime 1 1 double\n7\n%s%s%s",
+        i ? "5.1" : "3.0", points, cells[i], attributes);
     TetcastDataset *dataset = read_good(fixture, text_file(fixture, "a.vtk", text));
     for (int j = 0; j < 11; ++j) {
       TetcastDatasetArray array;
@@ -342,8 +365,8 @@ static void read_any(Fixture *fixture, const char *path) {
     TetcastField *field;
     assert_int_equal(tetcast_dataset_field(dataset, array.name, &field, NULL), TETCAST_OK);
     assert_int_equal(tetcast_field_values(field).count, tetcast_field_association(field) == TETCAST_POINT
-                                                          ? tetcast_mesh_vertex_count(mesh)
-                                                          : tetcast_mesh_tetrahedron_count(mesh));
+                                                            ? tetcast_mesh_vertex_count(mesh)
+                                                            : tetcast_mesh_tetrahedron_count(mesh));
     tetcast_field_destroy(&field);
   }
   tetcast_mesh_destroy(&mesh);
@@ -364,8 +387,9 @@ static void test_conforming(void **state) {
     int64_t boundary_faces;
     double volume;
   } cases[] = {
-    {"volumes/disk_out_ref.vtu", 2 * 1988, 0},     {"volumes/fire_ug.vtu", 2 * 3546, 0}, {"cells/QuadraticTetra.vtu", 4 * 48, 8},
-    {"cells/hybridHexPrismMesh.vtk", 632, 1}, {"cells/pebi3d_with_properties.vtu", 2056, 1},
+      {"volumes/disk_out_ref.vtu", 2 * 1988, 0},     {"volumes/fire_ug.vtu", 2 * 3546, 0},
+      {"cells/QuadraticTetra.vtu", 4 * 48, 8},       {"cells/hybridHexPrismMesh.vtk", 632, 1},
+      {"cells/pebi3d_with_properties.vtu", 2056, 1},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     TetcastDataset *dataset = read_good(fixture, data_path(fixture, cases[i].name));
@@ -401,7 +425,8 @@ static void *read_many(void *shared) {
 static void test_threads(void **state) {
   Fixture *fixture = *state;
   text_file(fixture, "good.vtu", xml(""));
-  text_file(fixture, "bad.vtu", xml("<PointData><DataArray type='Int64' Name='short' format='ascii'>1</DataArray></PointData>"));
+  text_file(fixture, "bad.vtu",
+            xml("<PointData><DataArray type='Int64' Name='short' format='ascii'>1</DataArray></PointData>"));
   pthread_t threads[4];
   for (int i = 0; i < 4; ++i) assert_int_equal(pthread_create(&threads[i], NULL, read_many, fixture), 0);
   for (int i = 0; i < 4; ++i) {
@@ -413,9 +438,12 @@ static void test_threads(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    TEST(test_mixed_cells), TEST(test_selectors),    TEST(test_default_field), TEST(test_magnitude),
-    TEST(test_legacy_attributes), TEST(test_content_beats_extension), TEST(test_encodings), TEST(test_pieces), TEST(test_others_files),
-    TEST(test_conforming), TEST(test_threads),
+      TEST(test_mixed_cells),       TEST(test_selectors),
+      TEST(test_default_field),     TEST(test_magnitude),
+      TEST(test_legacy_attributes), TEST(test_content_beats_extension),
+      TEST(test_encodings),         TEST(test_pieces),
+      TEST(test_others_files),      TEST(test_conforming),
+      TEST(test_threads),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

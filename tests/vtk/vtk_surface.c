@@ -42,19 +42,26 @@ static void test_formats(void **state) {
   static const struct {
     const char *name, *text;
   } cases[] = {
-    {"a.stl", "solid vertex\n facet normal 0 0 1\n outer loop\n vertex 0 0 0\n vertex 1 0 0\n vertex 1 1 0\n endloop\n endfacet\n"
-              " facet normal 0 0 1\n outer loop\n vertex -0 0 0\n vertex 1.0 +1 0\n vertex 0e5 1 0\n endloop\n endfacet\nendsolid vertex\n"},
-    {"A.OFF", "OFF\n# a comment\n5 1 0\n0 0 0\n1 0 0\n\n1 1 0\n0 1 0\n7 7 7\n4 0 1 2 3  255 0 0\n"},
-    {"b.off", "COFF 4 2 5\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n1 1 0 1 1 1 1\n0 1 0 1 1 1 1\n3 0 1 2\n3 0 2 3\n"},
-    {"a.obj", "# comment\no thing\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 0\nvt 0 0\nvn 0 0 1\nf 1/1 2/1/1 3//1 -2\n"},
-    {"b.obj", "v 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nv 0 1 0\r\nf 1 2 \\\r\n3 4\r\n"},
-    {"a.ply", "ply\nformat ascii 1.0\ncomment c\n" PLY_VERTEX PLY_FACE "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"},
-    {"a.vtk", LEGACY "LINES 1 3\n2 0 1\nPOLYGONS 1 5\n4 0 1 2 3\nPOINT_DATA 4\nSCALARS a float\nLOOKUP_TABLE default\n1 2 3 4\n"},
-    {"b.vtk", LEGACY "TRIANGLE_STRIPS 1 5\n4 0 1 3 2\n"},
-    {"a.vtp", "<VTKFile type='PolyData' version='0.1' byte_order='LittleEndian'><PolyData><Piece NumberOfPoints='4' NumberOfPolys='1'>"
-              "<Points><DataArray type='Float32' NumberOfComponents='3' format='ascii'>0 0 0 1 0 0 1 1 0 0 1 0</DataArray></Points><Polys>"
-              "<DataArray type='Int32' Name='connectivity' format='ascii'>0 1 2 3</DataArray>"
-              "<DataArray type='Int32' Name='offsets' format='ascii'>4</DataArray></Polys></Piece></PolyData></VTKFile>"},
+      {"a.stl", "solid vertex\n facet normal 0 0 1\n outer loop\n vertex 0 0 0\n vertex 1 0 0\n vertex 1 1 0\n "
+                "endloop\n endfacet\n"
+                " facet normal 0 0 1\n outer loop\n vertex -0 0 0\n vertex 1.0 +1 0\n vertex 0e5 1 0\n endloop\n "
+                "endfacet\nendsolid vertex\n"},
+      {"A.OFF", "OFF\n# a comment\n5 1 0\n0 0 0\n1 0 0\n\n1 1 0\n0 1 0\n7 7 7\n4 0 1 2 3  255 0 0\n"},
+      {"b.off", "COFF 4 2 5\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n1 1 0 1 1 1 1\n0 1 0 1 1 1 1\n3 0 1 2\n3 0 2 3\n"},
+      {"a.obj",
+       "# comment\no thing\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 0\nvt 0 0\nvn 0 0 1\nf 1/1 2/1/1 3//1 -2\n"},
+      {"b.obj", "v 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nv 0 1 0\r\nf 1 2 \\\r\n3 4\r\n"},
+      {"a.ply", "ply\nformat ascii 1.0\ncomment c\n" PLY_VERTEX PLY_FACE "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"},
+      {"a.vtk", LEGACY
+       "LINES 1 3\n2 0 1\nPOLYGONS 1 5\n4 0 1 2 3\nPOINT_DATA 4\nSCALARS a float\nLOOKUP_TABLE default\n1 2 3 4\n"},
+      {"b.vtk", LEGACY "TRIANGLE_STRIPS 1 5\n4 0 1 3 2\n"},
+      {"a.vtp",
+       "<VTKFile type='PolyData' version='0.1' byte_order='LittleEndian'><PolyData><Piece NumberOfPoints='4' "
+       "NumberOfPolys='1'>"
+       "<Points><DataArray type='Float32' NumberOfComponents='3' format='ascii'>0 0 0 1 0 0 1 1 0 0 1 "
+       "0</DataArray></Points><Polys>"
+       "<DataArray type='Int32' Name='connectivity' format='ascii'>0 1 2 3</DataArray>"
+       "<DataArray type='Int32' Name='offsets' format='ascii'>4</DataArray></Polys></Piece></PolyData></VTKFile>"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     TetcastSurface surface = surface_good(fixture, text_file(fixture, cases[i].name, cases[i].text));
@@ -80,8 +87,10 @@ static void test_binary_formats(void **state) {
   static const double corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   for (int big = 0; big < 2; ++big) {
     unsigned char bytes[1024], *at = bytes;
-    at += sprintf((char *)at, "ply\nformat binary_%s_endian 1.0\nelement vertex 4\nproperty uchar red\nproperty double x\n"
-                  "property double y\nproperty double z\n" PLY_FACE, big ? "big" : "little");
+    at += sprintf((char *)at,
+                  "ply\nformat binary_%s_endian 1.0\nelement vertex 4\nproperty uchar red\nproperty double x\n"
+                  "property double y\nproperty double z\n" PLY_FACE,
+                  big ? "big" : "little");
     for (int i = 0; i < 4; ++i) {
       *at++ = 7;
       for (int k = 0; k < 3; ++k) put(&at, &corners[i][k], 8, big);
@@ -93,7 +102,8 @@ static void test_binary_formats(void **state) {
     assert_true(surface.triangle_count == 2 && area(&surface) == 1);
     tetcast_surface_release(&surface);
     for (size_t part = 0; part < size; ++part) {
-      assert_int_not_equal(tetcast_surface_read(fixture->context, file_of(fixture, "b.ply", bytes, part), &surface), TETCAST_OK);
+      assert_int_not_equal(tetcast_surface_read(fixture->context, file_of(fixture, "b.ply", bytes, part), &surface),
+                           TETCAST_OK);
     }
   }
   /* Binary STL whose title begins with "solid". */
@@ -114,7 +124,8 @@ static void test_binary_formats(void **state) {
   assert_true(surface.triangle_count == 2 && surface.vertex_count == 4 && area(&surface) == 1);
   tetcast_surface_release(&surface);
   fixture->errors = 0;
-  assert_int_equal(tetcast_surface_read(fixture->context, file_of(fixture, "b.stl", bytes, sizeof bytes - 1), &surface), TETCAST_ERROR_DATA);
+  assert_int_equal(tetcast_surface_read(fixture->context, file_of(fixture, "b.stl", bytes, sizeof bytes - 1), &surface),
+                   TETCAST_ERROR_DATA);
   assert_complaint(fixture, "b.stl", "truncated: holds 1 of 2 triangles");
   memset(bytes + 80, 0, 4); /* a writer that didn't know how many */
   surface = surface_good(fixture, file_of(fixture, "c.stl", bytes, sizeof bytes));
@@ -126,11 +137,13 @@ static void test_binary_formats(void **state) {
 static void test_polygons(void **state) {
   Fixture *fixture = *state;
   TetcastSurface surface = surface_good(
-    fixture, text_file(fixture, "bay.off", "OFF\n7 1 0\n0 0 0\n4 0 0\n4 4 0\n3 4 0\n3 1 0\n1 1 0\n0 4 0\n7 0 1 2 3 4 5 6\n"));
+      fixture,
+      text_file(fixture, "bay.off", "OFF\n7 1 0\n0 0 0\n4 0 0\n4 4 0\n3 4 0\n3 1 0\n1 1 0\n0 4 0\n7 0 1 2 3 4 5 6\n"));
   assert_int_equal(surface.triangle_count, 5);
   assert_true(fabs(area(&surface) - 8.5) < 1e-12); /* 16 − 6 − 1.5 */
   tetcast_surface_release(&surface);
-  surface = surface_good(fixture, text_file(fixture, "flat.off", "OFF\n5 2 0\n0 0 0\n1 0 0\n2 0 0\n3 0 0\n0 1 0\n4 0 1 2 3\n3 0 1 4\n"));
+  surface = surface_good(
+      fixture, text_file(fixture, "flat.off", "OFF\n5 2 0\n0 0 0\n1 0 0\n2 0 0\n3 0 0\n0 1 0\n4 0 1 2 3\n3 0 1 4\n"));
   assert_int_equal(surface.triangle_count, 3);
   tetcast_surface_release(&surface);
 }
@@ -140,48 +153,53 @@ static void test_defects(void **state) {
   static const struct {
     const char *name, *text, *words;
   } cases[] = {
-    {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n", "ends after 2 of 3 vertices"},
-    {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n", "ends after 0 of 1 faces"},
-    {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 x\n0 1 0\n3 0 1 2\n", "line 4: a coordinate expected, not 'x'"},
-    {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 nan\n0 1 0\n3 0 1 2\n", "point 1: coordinate z is"},
-    {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 1e999\n0 1 0\n3 0 1 2\n", "point 1: coordinate z is inf"},
-    {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "polygon 0: a point index is out of range (there are 3 points)"},
-    {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n99999999 0 1 2\n", "line 6"},
-    {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 1\n", "no triangles"},
-    {"a.off", "OFF\n-3 1 0\n", "numbers of vertices and faces expected"},
-    {"a.off", "OFF\n", "numbers of vertices and faces expected"},
-    {"a.off", "OFF\n99999999999999999999 1 0\n", "numbers of vertices and faces expected"},
-    {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "out of range"},
-    {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n", "out of range"},
-    {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n", "out of range"},
-    {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 a\n", "line 4"},
-    {"a.obj", "v 0 0\n", "line 1"},
-    {"a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", "truncated"},
-    {"a.stl", "nothing of the kind", "truncated"},
-    {"a.ply", "ply\nformat ascii 1.0\n" PLY_VERTEX PLY_FACE "0 0 0\n1 0 0\n1 1 0\n", "ends after 3 of 4 vertex"},
-    {"a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty foo x\nend_header\n0 0 0\n", "line 4"},
-    {"a.ply", "ply\nformat middle_endian 1.0\n" PLY_VERTEX PLY_FACE, "line 2"},
-    {"a.ply", "ply\n" PLY_VERTEX PLY_FACE, "no format"},
-    {"a.ply", "ply\nformat ascii 1.0\n" PLY_VERTEX, "header does not end"},
-    {"a.ply", "ply\nformat ascii 1.0\n" PLY_VERTEX PLY_FACE "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 7\n", "out of range"},
-    {"a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n", "coordinate y is"},
-    {"a.vtk", LEGACY "POLYGONS 1 5\n4 0 1 2 9\n", "polygon 0: point index 9 is out of range"},
-    {"a.vtk", LEGACY "POLYGONS 1 5\n7 0 1 2 3\n", "cell 0 does not fit"},
-    {"a.vtk", LEGACY, "no triangles"},
-    {"a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\n", "UNSTRUCTURED_GRID, not a surface"},
-    {"a.xyz", "0 0 0\n", "not a file of a surface in a known format"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n", "ends after 2 of 3 vertices"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n", "ends after 0 of 1 faces"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 x\n0 1 0\n3 0 1 2\n", "line 4: a coordinate expected, not 'x'"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 nan\n0 1 0\n3 0 1 2\n", "point 1: coordinate z is"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 1e999\n0 1 0\n3 0 1 2\n", "point 1: coordinate z is inf"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
+       "polygon 0: a point index is out of range (there are 3 points)"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n99999999 0 1 2\n", "line 6"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 1\n", "no triangles"},
+      {"a.off", "OFF\n-3 1 0\n", "numbers of vertices and faces expected"},
+      {"a.off", "OFF\n", "numbers of vertices and faces expected"},
+      {"a.off", "OFF\n99999999999999999999 1 0\n", "numbers of vertices and faces expected"},
+      {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "out of range"},
+      {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n", "out of range"},
+      {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n", "out of range"},
+      {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 a\n", "line 4"},
+      {"a.obj", "v 0 0\n", "line 1"},
+      {"a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", "truncated"},
+      {"a.stl", "nothing of the kind", "truncated"},
+      {"a.ply", "ply\nformat ascii 1.0\n" PLY_VERTEX PLY_FACE "0 0 0\n1 0 0\n1 1 0\n", "ends after 3 of 4 vertex"},
+      {"a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty foo x\nend_header\n0 0 0\n", "line 4"},
+      {"a.ply", "ply\nformat middle_endian 1.0\n" PLY_VERTEX PLY_FACE, "line 2"},
+      {"a.ply", "ply\n" PLY_VERTEX PLY_FACE, "no format"},
+      {"a.ply", "ply\nformat ascii 1.0\n" PLY_VERTEX, "header does not end"},
+      {"a.ply", "ply\nformat ascii 1.0\n" PLY_VERTEX PLY_FACE "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 7\n",
+       "out of range"},
+      {"a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n", "coordinate y is"},
+      {"a.vtk", LEGACY "POLYGONS 1 5\n4 0 1 2 9\n", "polygon 0: point index 9 is out of range"},
+      {"a.vtk", LEGACY "POLYGONS 1 5\n7 0 1 2 3\n", "cell 0 does not fit"},
+      {"a.vtk", LEGACY, "no triangles"},
+      {"a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\n",
+       "UNSTRUCTURED_GRID, not a surface"},
+      {"a.xyz", "0 0 0\n", "not a file of a surface in a known format"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     TetcastSurface surface;
     fixture->errors = 0;
-    const TetcastStatus status = tetcast_surface_read(fixture->context, text_file(fixture, cases[i].name, cases[i].text), &surface);
+    const TetcastStatus status =
+        tetcast_surface_read(fixture->context, text_file(fixture, cases[i].name, cases[i].text), &surface);
     assert_int_equal(status, TETCAST_ERROR_DATA);
     assert_complaint(fixture, fixture->path, cases[i].words);
     assert_null(surface.vertices);
     assert_int_equal(surface.triangle_count, 0);
   }
   TetcastSurface surface;
-  assert_int_equal(tetcast_surface_read(fixture->context, in_folder(fixture, "missing.stl"), &surface), TETCAST_ERROR_IO);
+  assert_int_equal(tetcast_surface_read(fixture->context, in_folder(fixture, "missing.stl"), &surface),
+                   TETCAST_ERROR_IO);
   assert_int_equal(tetcast_surface_read(fixture->context, NULL, &surface), TETCAST_ERROR_ARGUMENT);
   assert_int_equal(tetcast_surface_read(fixture->context, "a.stl", NULL), TETCAST_ERROR_ARGUMENT);
 }
@@ -192,7 +210,9 @@ static void test_others_files(void **state) {
   static const struct {
     const char *name;
     int64_t vertices, triangles;
-  } cases[] = {{"surfaces/bear.off", 13826, 27648}, {"surfaces/knot2.off", 5760, 11520}, {"surfaces/pliers_binary.stl", 5356, 10708}};
+  } cases[] = {{"surfaces/bear.off", 13826, 27648},
+               {"surfaces/knot2.off", 5760, 11520},
+               {"surfaces/pliers_binary.stl", 5356, 10708}};
   for (int i = 0; i < 3; ++i) {
     TetcastSurface surface = surface_good(fixture, data_path(fixture, cases[i].name));
     assert_int_equal(surface.vertex_count, cases[i].vertices);
@@ -202,7 +222,7 @@ static void test_others_files(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {TEST(test_formats),  TEST(test_binary_formats), TEST(test_polygons),
+  const struct CMUnitTest tests[] = {TEST(test_formats), TEST(test_binary_formats), TEST(test_polygons),
                                      TEST(test_defects), TEST(test_others_files)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -34,7 +34,8 @@ static Arrays *make_arrays(void) {
   a->point_values[5] = INFINITY;
   static const int corners[5][4] = {{0, 1, 3, 5}, {0, 3, 2, 6}, {0, 5, 4, 6}, {3, 5, 6, 7}, {0, 3, 5, 6}};
   for (int i = 0; i < CELLS; ++i) {
-    const int cube = i / 5, x = cube % (SIDE - 1), y = cube / (SIDE - 1) % (SIDE - 1), z = cube / ((SIDE - 1) * (SIDE - 1));
+    const int cube = i / 5, x = cube % (SIDE - 1), y = cube / (SIDE - 1) % (SIDE - 1),
+              z = cube / ((SIDE - 1) * (SIDE - 1));
     for (int j = 0; j < 4; ++j) {
       const int c = corners[i % 5][j];
       const int index = x + (c & 1) + SIDE * (y + (c >> 1 & 1) + SIDE * (z + (c >> 2)));
@@ -63,7 +64,8 @@ static TetcastMesh *make_mesh(Fixture *fixture, const Arrays *a, TetcastType poi
   return mesh;
 }
 
-static TetcastField *make_field(Fixture *fixture, const void *data, TetcastType type, int64_t count, TetcastAssociation association) {
+static TetcastField *make_field(Fixture *fixture, const void *data, TetcastType type, int64_t count,
+                                TetcastAssociation association) {
   TetcastFieldDesc desc = tetcast_field_desc_default();
   desc.values = (TetcastArray){.data = data, .type = type, .count = count};
   desc.association = association;
@@ -72,7 +74,8 @@ static TetcastField *make_field(Fixture *fixture, const void *data, TetcastType 
   return field;
 }
 
-static void assert_same_field(const TetcastDataset *dataset, const char *name, const void *data, TetcastType type, size_t size) {
+static void assert_same_field(const TetcastDataset *dataset, const char *name, const void *data, TetcastType type,
+                              size_t size) {
   TetcastField *field;
   assert_int_equal(tetcast_dataset_field(dataset, name, &field, NULL), TETCAST_OK);
   const TetcastArray values = tetcast_field_values(field);
@@ -94,7 +97,8 @@ static void test_round_trip(void **state) {
   for (int i = 0; i < 6; ++i) {
     TetcastMesh *mesh = make_mesh(fixture, a, point_types[i % 2], index_types[i / 2]);
     const char *path = in_folder(fixture, "a.vtu");
-    assert_int_equal(tetcast_dataset_write(fixture->context, path, mesh, 3, names, (const TetcastField *const *)fields), TETCAST_OK);
+    assert_int_equal(tetcast_dataset_write(fixture->context, path, mesh, 3, names, (const TetcastField *const *)fields),
+                     TETCAST_OK);
     TetcastDataset *dataset = read_good(fixture, path);
     TetcastMesh *again;
     assert_int_equal(tetcast_dataset_mesh(dataset, &again), TETCAST_OK);
@@ -129,7 +133,8 @@ static void test_format(void **state) {
   Fixture *fixture = *state;
   Arrays *a = make_arrays();
   TetcastMesh *mesh = make_mesh(fixture, a, TETCAST_TYPE_FLOAT64, TETCAST_TYPE_INT64);
-  assert_int_equal(tetcast_dataset_write(fixture->context, in_folder(fixture, "a.vtu"), mesh, 0, NULL, NULL), TETCAST_OK);
+  assert_int_equal(tetcast_dataset_write(fixture->context, in_folder(fixture, "a.vtu"), mesh, 0, NULL, NULL),
+                   TETCAST_OK);
   size_t size;
   char *bytes = contents(fixture->path, &size);
   assert_true(size < sizeof a->points + sizeof a->cells);
@@ -158,14 +163,17 @@ static void test_failures(void **state) {
                             make_field(fixture, a->point_values, TETCAST_TYPE_FLOAT64, POINTS - 1, TETCAST_POINT)};
   const TetcastField *const *given = (const TetcastField *const *)fields;
   static const char *const twice[] = {"a", "a"}, *const unnamed[] = {"a", NULL}, *const nameless[] = {""},
-                    *const control[] = {"a\nb"};
+                           *const control[] = {"a\nb"};
   const char *path = in_folder(fixture, "a.vtu");
 
-  assert_refused(fixture, tetcast_dataset_write(context, "/nonexistent/folder/a.vtu", mesh, 0, NULL, NULL), TETCAST_ERROR_IO,
-                 "No such file or directory");
-  assert_refused(fixture, tetcast_dataset_write(context, path, mesh, 2, twice, given), TETCAST_ERROR_ARGUMENT, "two fields");
-  assert_refused(fixture, tetcast_dataset_write(context, path, mesh, 2, unnamed, given), TETCAST_ERROR_ARGUMENT, "field 1");
-  assert_refused(fixture, tetcast_dataset_write(context, path, mesh, 1, nameless, given), TETCAST_ERROR_ARGUMENT, "field 0");
+  assert_refused(fixture, tetcast_dataset_write(context, "/nonexistent/folder/a.vtu", mesh, 0, NULL, NULL),
+                 TETCAST_ERROR_IO, "No such file or directory");
+  assert_refused(fixture, tetcast_dataset_write(context, path, mesh, 2, twice, given), TETCAST_ERROR_ARGUMENT,
+                 "two fields");
+  assert_refused(fixture, tetcast_dataset_write(context, path, mesh, 2, unnamed, given), TETCAST_ERROR_ARGUMENT,
+                 "field 1");
+  assert_refused(fixture, tetcast_dataset_write(context, path, mesh, 1, nameless, given), TETCAST_ERROR_ARGUMENT,
+                 "field 0");
   assert_refused(fixture, tetcast_dataset_write(context, path, mesh, 1, twice, given + 2), TETCAST_ERROR_ARGUMENT,
                  "1727 values for 1728 vertices");
   assert_int_equal(tetcast_dataset_write(context, path, mesh, 1, control, given), TETCAST_ERROR_ARGUMENT);
@@ -176,15 +184,16 @@ static void test_failures(void **state) {
 
   fixture->errors = 0;
   assert_int_equal(mkdir(in_folder(fixture, "d.vtu"), 0700), 0);
-  assert_refused(fixture, tetcast_dataset_write(context, fixture->path, mesh, 0, NULL, NULL), TETCAST_ERROR_IO, "is a folder");
+  assert_refused(fixture, tetcast_dataset_write(context, fixture->path, mesh, 0, NULL, NULL), TETCAST_ERROR_IO,
+                 "is a folder");
   assert_int_equal(rmdir(fixture->path), 0);
   for (int i = 0; i < 3; ++i) tetcast_field_destroy(&fields[i]);
   tetcast_mesh_destroy(&mesh);
   free(a);
 }
 
-/* A limit on the size of files stands in for a full disk: wherever it strikes, nothing is left behind, and what was there
- * before stays. */
+/* A limit on the size of files stands in for a full disk: wherever it strikes, nothing is left behind, and what was
+ * there before stays. */
 static void test_full_disk(void **state) {
   Fixture *fixture = *state;
   Arrays *a = make_arrays();
@@ -217,6 +226,7 @@ static void test_full_disk(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {TEST(test_round_trip), TEST(test_format), TEST(test_failures), TEST(test_full_disk)};
+  const struct CMUnitTest tests[] = {TEST(test_round_trip), TEST(test_format), TEST(test_failures),
+                                     TEST(test_full_disk)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

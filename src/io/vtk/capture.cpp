@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// VTK prints its errors through one global output window and, independently of that, a logger. Both are replaced while a
-// capture lives, and put back with the last one; what threads without a capture say goes where it went before.
+// VTK prints its errors through one global output window and, independently of that, a logger. Both are replaced while
+// a capture lives, and put back with the last one; what threads without a capture say goes where it went before.
 #include "common.hpp"
 
 #include <cstring>

@@ -31,8 +31,8 @@ struct CellType {
   int points; // 0: any number
 };
 
-// Linear cells are cut by the order of their point indices, so that neighbours agree about the diagonal of the face between
-// them. Nonlinear cells and polyhedra cut themselves, which agrees for them, while the ordered way does not.
+// Linear cells are cut by the order of their point indices, so that neighbours agree about the diagonal of the face
+// between them. Nonlinear cells and polyhedra cut themselves, which agrees for them, while the ordered way does not.
 const CellType cell_types[] = {
     {VTK_EMPTY_CELL, "empty cell", IGNORED, 0},
     {VTK_VERTEX, "vertex", IGNORED, 0},
@@ -128,7 +128,8 @@ TypeTable survey(const char *path, vtkUnstructuredGrid *grid, tcv::Tetrahedra *r
     if (!type) tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: there is no cell type %d", path, cell, id);
     const long long points = connectivity->GetCellSize(i);
     if (points < type->points) {
-      tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: a %s has %d points, not %lld", path, cell, type->name, type->points, points);
+      tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: a %s has %d points, not %lld", path, cell, type->name, type->points,
+                points);
     }
     result->oversized += type->points && points > type->points;
     ++counts[id];
@@ -142,7 +143,8 @@ TypeTable survey(const char *path, vtkUnstructuredGrid *grid, tcv::Tetrahedra *r
     if (table[id]->way == REFUSED) refused = table[id];
   }
   std::stable_sort(result->types.begin(), result->types.end(), [](auto &a, auto &b) { return a.second > b.second; });
-  if (refused) tcv::fail(TETCAST_ERROR_UNSUPPORTED, "%s: holds cells of type %s, which can't be cut yet", path, refused->name);
+  if (refused)
+    tcv::fail(TETCAST_ERROR_UNSUPPORTED, "%s: holds cells of type %s, which can't be cut yet", path, refused->name);
   if (!volumetric) {
     std::string list;
     for (const auto &[name, count] : result->types) {
@@ -170,7 +172,8 @@ void check_polyhedron(const char *path, vtkUnstructuredGrid *grid, int64_t i, vt
     at += corners + 1;
   }
   if (!good) {
-    tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: the list of the polyhedron's faces is damaged", path, static_cast<long long>(i));
+    tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: the list of the polyhedron's faces is damaged", path,
+              static_cast<long long>(i));
   }
 }
 
@@ -288,7 +291,8 @@ void make_tetrahedra(const char *path, vtkUnstructuredGrid *grid, Tetrahedra *re
   bool any_ghost = false;
   for (int64_t i = 0; ghosts && i < grid->GetNumberOfCells() && !any_ghost; ++i) any_ghost = is_ghost(ghosts, i);
 
-  if (result->types.size() == 1 && result->types[0].first == find_type(VTK_TETRA)->name && !any_ghost && !result->oversized) {
+  if (result->types.size() == 1 && result->types[0].first == find_type(VTK_TETRA)->name && !any_ghost &&
+      !result->oversized) {
     result->connectivity = grid->GetCells()->GetConnectivityArray();
     result->view = view_of(result->connectivity);
     result->view.count = grid->GetNumberOfCells();

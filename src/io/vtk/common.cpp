@@ -67,7 +67,9 @@ int64_t file_size(const char *path) {
   return path && stat(path, &status) == 0 ? static_cast<int64_t>(status.st_size) : 0;
 }
 
-static bool begins_with(const std::string &text, const char *start) { return text.compare(0, std::strlen(start), start) == 0; }
+static bool begins_with(const std::string &text, const char *start) {
+  return text.compare(0, std::strlen(start), start) == 0;
+}
 
 static std::string upper_case(std::string text) {
   for (char &c : text) c = (c >= 'a' && c <= 'z') ? static_cast<char>(c - 'a' + 'A') : c;
@@ -130,15 +132,16 @@ void refuse(const char *path, const std::string &kind, const char *wanted, const
     fail(TETCAST_ERROR_DATA, "%s: is not a file of %s in a known format (%s)", path, wanted, extensions);
   }
   if (kind == "HDF5" || kind == "NetCDF") {
-    fail(TETCAST_ERROR_UNSUPPORTED, "%s: is in a format on top of %s, which this version does not read", path, kind.c_str());
+    fail(TETCAST_ERROR_UNSUPPORTED, "%s: is in a format on top of %s, which this version does not read", path,
+         kind.c_str());
   }
   if (kind == "vtk " || kind == "VTKFile ") {
     fail(TETCAST_ERROR_DATA, "%s: does not say what kind of dataset it holds; truncated?", path);
   }
   const size_t space = kind.find(' ');
   const bool vtk = space != std::string::npos;
-  fail(TETCAST_ERROR_DATA, "%s: holds %s%s, not %s", path, vtk ? kind.c_str() + space + 1 : kind.c_str(), vtk ? "" : " data",
-       wanted);
+  fail(TETCAST_ERROR_DATA, "%s: holds %s%s, not %s", path, vtk ? kind.c_str() + space + 1 : kind.c_str(),
+       vtk ? "" : " data", wanted);
 }
 
 // ── what VTK hands out ──
@@ -146,8 +149,8 @@ void refuse(const char *path, const std::string &kind, const char *wanted, const
 template <typename T> static void check_finite(const char *path, const T *values, int64_t count) {
   for (int64_t i = 0; i < count; ++i) {
     if (!std::isfinite(values[i])) {
-      fail(TETCAST_ERROR_DATA, "%s: point %lld: coordinate %c is %g", path, static_cast<long long>(i / 3),
-           "xyz"[i % 3], static_cast<double>(values[i]));
+      fail(TETCAST_ERROR_DATA, "%s: point %lld: coordinate %c is %g", path, static_cast<long long>(i / 3), "xyz"[i % 3],
+           static_cast<double>(values[i]));
     }
   }
 }
@@ -158,12 +161,15 @@ void check_points(const char *path, vtkPoints *points) {
     fail(TETCAST_ERROR_DATA, "%s: points have %d components, not 3", path, data->GetNumberOfComponents());
   }
   const int64_t count = 3 * static_cast<int64_t>(data->GetNumberOfTuples());
-  if (auto *floats = vtkAOSDataArrayTemplate<float>::FastDownCast(data)) check_finite(path, floats->GetPointer(0), count);
-  if (auto *doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(data)) check_finite(path, doubles->GetPointer(0), count);
+  if (auto *floats = vtkAOSDataArrayTemplate<float>::FastDownCast(data))
+    check_finite(path, floats->GetPointer(0), count);
+  if (auto *doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(data))
+    check_finite(path, doubles->GetPointer(0), count);
 }
 
 template <typename ArrayType>
-static void check_cells_of(const char *path, ArrayType *offsets, ArrayType *indices, int64_t point_count, const char *what) {
+static void check_cells_of(const char *path, ArrayType *offsets, ArrayType *indices, int64_t point_count,
+                           const char *what) {
   const int64_t count = static_cast<int64_t>(offsets->GetNumberOfValues()) - 1;
   const int64_t size = indices->GetNumberOfValues();
   if (count < 0) return;
@@ -173,13 +179,14 @@ static void check_cells_of(const char *path, ArrayType *offsets, ArrayType *indi
   for (int64_t i = 0; i < count; ++i) {
     const long long cell = i;
     if (offset[i + 1] < offset[i] || offset[i + 1] > size) {
-      fail(TETCAST_ERROR_DATA, "%s: %s %lld: offset %lld is %s", path, what, cell, static_cast<long long>(offset[i + 1]),
+      fail(TETCAST_ERROR_DATA, "%s: %s %lld: offset %lld is %s", path, what, cell,
+           static_cast<long long>(offset[i + 1]),
            offset[i + 1] > size ? "beyond the end of the list of points" : "less than the one before");
     }
     for (int64_t j = offset[i]; j < offset[i + 1]; ++j) {
       if (index[j] < 0 || index[j] >= point_count) {
-        fail(TETCAST_ERROR_DATA, "%s: %s %lld: point index %lld is out of range (there are %lld points)", path, what, cell,
-             static_cast<long long>(index[j]), static_cast<long long>(point_count));
+        fail(TETCAST_ERROR_DATA, "%s: %s %lld: point index %lld is out of range (there are %lld points)", path, what,
+             cell, static_cast<long long>(index[j]), static_cast<long long>(point_count));
       }
     }
   }
@@ -196,7 +203,8 @@ void check_cells(const char *path, vtkCellArray *cells, int64_t point_count, con
 // ── types ──
 
 const char *type_name(const vtkDataArray *array) {
-  static const char *const integers[2][4] = {{"int8", "int16", "int32", "int64"}, {"uint8", "uint16", "uint32", "uint64"}};
+  static const char *const integers[2][4] = {{"int8", "int16", "int32", "int64"},
+                                             {"uint8", "uint16", "uint32", "uint64"}};
   int row = 0;
   switch (array->GetDataType()) {
   case VTK_FLOAT: return "float32";

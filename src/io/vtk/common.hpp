@@ -35,7 +35,8 @@ template <typename Body> TetcastStatus fence(TetcastContext *context, const char
   } catch (const Failure &failure) {
     return tetcast_context_error(context, failure.status, "%s", failure.text.c_str());
   } catch (const std::bad_alloc &) {
-    return tetcast_context_error(context, TETCAST_ERROR_MEMORY, "%s: not enough memory for what it holds or claims to hold", path);
+    return tetcast_context_error(context, TETCAST_ERROR_MEMORY,
+                                 "%s: not enough memory for what it holds or claims to hold", path);
   } catch (const std::exception &exception) {
     return tetcast_context_error(context, TETCAST_ERROR_DATA, "%s: %s", path, exception.what());
   } catch (...) {
@@ -66,7 +67,8 @@ std::string file_head(const char *path);
 std::string file_contents(const char *path);
 int64_t file_size(const char *path); // 0 if there is no such file
 
-// What the content says the file is: "VTKFile UnstructuredGrid", "vtk POLYDATA", "PLY", "OFF", "STL", "HDF5", "NetCDF", "" …
+// What the content says the file is: "VTKFile UnstructuredGrid", "vtk POLYDATA", "PLY", "OFF", "STL", "HDF5", "NetCDF",
+// "" …
 std::string file_kind(const std::string &head);
 bool has_extension(const char *path, const char *extension); // ".vtu", in any case of letters
 
@@ -77,9 +79,9 @@ bool has_extension(const char *path, const char *extension); // ".vtu", in any c
 void check_points(const char *path, vtkPoints *points);
 void check_cells(const char *path, vtkCellArray *cells, int64_t point_count, const char *what);
 
-TetcastType type_of(const vtkDataArray *array);    // NONE for types TetcastType lacks
-const char *type_name(const vtkDataArray *array);  // "float64", "int8" …; static storage
-TetcastArray view_of(vtkDataArray *array);         // type must not be NONE
+TetcastType type_of(const vtkDataArray *array);   // NONE for types TetcastType lacks
+const char *type_name(const vtkDataArray *array); // "float64", "int8" …; static storage
+TetcastArray view_of(vtkDataArray *array);        // type must not be NONE
 int64_t type_size(TetcastType type);
 
 } // namespace tcv

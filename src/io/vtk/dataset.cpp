@@ -60,8 +60,8 @@ static void take_points(const char *path, vtkUnstructuredGrid *grid, TetcastData
   dataset->cell_count = grid->GetNumberOfCells();
 }
 
-static void take_arrays(const char *path, vtkDataSetAttributes *attributes, TetcastAssociation association, int64_t count,
-                        std::vector<Array> *arrays) {
+static void take_arrays(const char *path, vtkDataSetAttributes *attributes, TetcastAssociation association,
+                        int64_t count, std::vector<Array> *arrays) {
   const char *what = association == TETCAST_POINT ? "point" : "cell";
   for (int i = 0; i < attributes->GetNumberOfArrays(); ++i) {
     vtkDataArray *data = attributes->GetArray(i); // null for strings
@@ -89,13 +89,14 @@ static void read_dataset(TetcastContext *context, const char *path, TetcastDatas
     make_tetrahedra(path, grid, &dataset->tetrahedra);
   }
   if (dataset->tetrahedra.uncut > 0) {
-    tetcast_context_message(context, TETCAST_SEVERITY_WARNING, "%s: %lld cells can't be cut into tetrahedra and are left out",
-                            path, static_cast<long long>(dataset->tetrahedra.uncut));
+    tetcast_context_message(context, TETCAST_SEVERITY_WARNING,
+                            "%s: %lld cells can't be cut into tetrahedra and are left out", path,
+                            static_cast<long long>(dataset->tetrahedra.uncut));
   }
   if (dataset->tetrahedra.oversized > 0) {
     tetcast_context_message(context, TETCAST_SEVERITY_WARNING,
-                            "%s: %lld cells have more points than their type has: the last ones of each are ignored", path,
-                            static_cast<long long>(dataset->tetrahedra.oversized));
+                            "%s: %lld cells have more points than their type has: the last ones of each are ignored",
+                            path, static_cast<long long>(dataset->tetrahedra.oversized));
   }
   take_arrays(path, grid->GetPointData(), TETCAST_POINT, dataset->point_count, &dataset->arrays);
   take_arrays(path, grid->GetCellData(), TETCAST_CELL, dataset->cell_count, &dataset->arrays);
@@ -104,7 +105,8 @@ static void read_dataset(TetcastContext *context, const char *path, TetcastDatas
 TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, TetcastDataset **dataset) {
   if (dataset) *dataset = nullptr;
   if (!context || !path || !dataset) {
-    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "tetcast_dataset_read: context, path and dataset must not be NULL");
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
+                                 "tetcast_dataset_read: context, path and dataset must not be NULL");
   }
   return fence(context, path, [&] {
     auto result = std::make_unique<TetcastDataset>();

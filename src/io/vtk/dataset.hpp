@@ -33,8 +33,8 @@ struct TetcastDataset {
   int64_t point_count = 0, cell_count = 0;
   vtkSmartPointer<vtkDataArray> points; // float32 or float64
   tcv::Tetrahedra tetrahedra;
-  std::vector<tcv::Array> arrays; // point arrays first
-  mutable std::mutex mutex;       // guards the next
+  std::vector<tcv::Array> arrays;          // point arrays first
+  mutable std::mutex mutex;                // guards the next
   mutable std::set<std::string> selectors; // that were handed out
 };
 

@@ -49,7 +49,8 @@ static const Array *default_array(const TetcastDataset *dataset) {
 }
 
 static Selection select(const TetcastDataset *dataset, const char *selector) {
-  if (dataset->arrays.empty()) fail(TETCAST_ERROR_DATA, "%s: has no arrays over points or cells", dataset->path.c_str());
+  if (dataset->arrays.empty())
+    fail(TETCAST_ERROR_DATA, "%s: has no arrays over points or cells", dataset->path.c_str());
   Selection selection;
   selection.array = selector ? find_array(dataset, selector) : default_array(dataset);
   if (selection.array) {
@@ -65,8 +66,8 @@ static Selection select(const TetcastDataset *dataset, const char *selector) {
   const size_t digits = std::strspn(part, "0123456789");
   const int number = digits > 0 && digits < 9 && part[digits] == '\0' ? std::stoi(part) : components;
   if (number >= components) {
-    fail(TETCAST_ERROR_ARGUMENT, "%s: array '%s' has no component '%s'; there are: 0 to %d and mag", dataset->path.c_str(),
-         selection.array->name.c_str(), part, components - 1);
+    fail(TETCAST_ERROR_ARGUMENT, "%s: array '%s' has no component '%s'; there are: 0 to %d and mag",
+         dataset->path.c_str(), selection.array->name.c_str(), part, components - 1);
   }
   selection.component = number;
   return selection;
@@ -103,7 +104,8 @@ static std::vector<char> gathered(const TetcastArray &values, const std::vector<
   const size_t stride = values.stride ? static_cast<size_t>(values.stride) : size;
   std::vector<char> result(source.size() * size);
   for (size_t i = 0; i < source.size(); ++i) {
-    std::memcpy(&result[i * size], static_cast<const char *>(values.data) + static_cast<size_t>(source[i]) * stride, size);
+    std::memcpy(&result[i * size], static_cast<const char *>(values.data) + static_cast<size_t>(source[i]) * stride,
+                size);
   }
   return result;
 }
@@ -144,7 +146,8 @@ static const char *kept_name(const TetcastDataset *dataset, const Selection &sel
   return dataset->selectors.insert(name).first->c_str();
 }
 
-TetcastStatus tetcast_dataset_field(const TetcastDataset *dataset, const char *selector, TetcastField **field, const char **name) {
+TetcastStatus tetcast_dataset_field(const TetcastDataset *dataset, const char *selector, TetcastField **field,
+                                    const char **name) {
   if (field) *field = nullptr;
   if (name) *name = nullptr;
   if (!dataset || !field) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Legacy .vtk files. VTK's own loops over their sections write beyond their memory when counts or cells are damaged; its
-// functions for single words and arrays are sound once the counts are, and do the work here.
+// Legacy .vtk files. VTK's own loops over their sections write beyond their memory when counts or cells are damaged;
+// its functions for single words and arrays are sound once the counts are, and do the work here.
 #include "common.hpp"
 #include "files.hpp"
 
@@ -31,7 +31,8 @@ public:
 class LegacyFile {
 public:
   LegacyFile(const char *path, const char *type) : path_(path), size_(tcv::file_size(path)) {
-    if (!reader_->OpenVTKFile(path) || !reader_->ReadHeader(path) || !next() || !is("dataset") || !next() || !is(type)) {
+    if (!reader_->OpenVTKFile(path) || !reader_->ReadHeader(path) || !next() || !is("dataset") || !next() ||
+        !is(type)) {
       damaged("the header");
     }
   }
@@ -104,7 +105,8 @@ public:
     for (int64_t i = 0; i < size; ++i) {
       const int type = types[static_cast<size_t>(i)];
       if (type < 0 || type > 255) {
-        tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: there is no cell type %d", path_, static_cast<long long>(i), type);
+        tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: there is no cell type %d", path_, static_cast<long long>(i),
+                  type);
       }
       result->SetValue(i, static_cast<unsigned char>(type));
     }
@@ -124,8 +126,8 @@ public:
         have = points ? dataset->GetNumberOfPoints() : dataset->GetNumberOfCells();
         const int64_t values = count(section);
         if (values != have) {
-          tcv::fail(TETCAST_ERROR_DATA, "%s: %s for %lld %s, but there are %lld", path_, section, static_cast<long long>(values),
-                    points ? "points" : "cells", static_cast<long long>(have));
+          tcv::fail(TETCAST_ERROR_DATA, "%s: %s for %lld %s, but there are %lld", path_, section,
+                    static_cast<long long>(values), points ? "points" : "cells", static_cast<long long>(have));
         }
       } else if (!target) {
         damaged("the keyword", word_);
@@ -136,7 +138,8 @@ public:
   }
 
   [[noreturn]] void damaged(const char *section, const char *word = "") const {
-    tcv::fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: %s%s%s can't be read", path_, section, *word ? " " : "", word);
+    tcv::fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: %s%s%s can't be read", path_, section, *word ? " " : "",
+              word);
   }
 
 private:
@@ -146,10 +149,11 @@ private:
     static const struct {
       const char *keyword;
       int components, attribute;
-    } plain[] = {{"vectors", 3, vtkDataSetAttributes::VECTORS},      {"normals", 3, vtkDataSetAttributes::NORMALS},
-                 {"tensors", 9, vtkDataSetAttributes::TENSORS},      {"tensors6", 6, vtkDataSetAttributes::TENSORS},
-                 {"global_ids", 1, vtkDataSetAttributes::GLOBALIDS}, {"pedigree_ids", 1, vtkDataSetAttributes::PEDIGREEIDS},
-                 {"edge_flags", 1, vtkDataSetAttributes::EDGEFLAG}};
+    } plain[] = {
+        {"vectors", 3, vtkDataSetAttributes::VECTORS},      {"normals", 3, vtkDataSetAttributes::NORMALS},
+        {"tensors", 9, vtkDataSetAttributes::TENSORS},      {"tensors6", 6, vtkDataSetAttributes::TENSORS},
+        {"global_ids", 1, vtkDataSetAttributes::GLOBALIDS}, {"pedigree_ids", 1, vtkDataSetAttributes::PEDIGREEIDS},
+        {"edge_flags", 1, vtkDataSetAttributes::EDGEFLAG}};
     if (is("scalars")) return read_scalars(target, have);
     if (is("field")) return read_field(target);
     if (is("metadata")) return skip_metadata();
@@ -179,7 +183,8 @@ private:
   void read_scalars(vtkDataSetAttributes *target, int64_t have) {
     char line[256], name[256] = "", type[256] = "";
     int components = 1;
-    if (!reader_->ReadLine(line) || std::sscanf(line, "%255s %255s %d", name, type, &components) < 2) damaged("SCALARS");
+    if (!reader_->ReadLine(line) || std::sscanf(line, "%255s %255s %d", name, type, &components) < 2)
+      damaged("SCALARS");
     if (word("SCALARS") != "LOOKUP_TABLE" && !is("lookup_table")) damaged("SCALARS", name);
     word("LOOKUP_TABLE");
     add(target, name, values(type, have, components), vtkDataSetAttributes::SCALARS);
@@ -219,7 +224,8 @@ private:
     vtkSmartPointer<vtkDataArray> numbers = vtkDataArray::SafeDownCast(array);
     if (!numbers) damaged("the list of cells");
     const int type = numbers->GetDataType();
-    if (type != VTK_INT && type != VTK_LONG && type != VTK_LONG_LONG && type != VTK_ID_TYPE) damaged("the list of cells");
+    if (type != VTK_INT && type != VTK_LONG && type != VTK_LONG_LONG && type != VTK_ID_TYPE)
+      damaged("the list of cells");
     return numbers;
   }
 
@@ -277,7 +283,8 @@ void check_face_streams(const char *path, vtkUnsignedCharArray *types, vtkCellAr
       for (int64_t j = 0; good && j < corners; ++j, ++at) good = stream[at] >= 0 && stream[at] < point_count;
     }
     if (!good || at != size) {
-      tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: the list of the polyhedron's faces is damaged", path, static_cast<long long>(i));
+      tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: the list of the polyhedron's faces is damaged", path,
+                static_cast<long long>(i));
     }
   }
 }

@@ -192,7 +192,8 @@ static void read_surface(const char *path, TetcastSurface *surface) {
   check(path, polygons);
   const Capture capture; // VTK complains about polygons that it can't cut
   Builder builder(polygons);
-  for (size_t i = 0, begin = 0; i < polygons.ends.size(); begin = polygons.ends[i++]) builder.add(begin, polygons.ends[i]);
+  for (size_t i = 0, begin = 0; i < polygons.ends.size(); begin = polygons.ends[i++])
+    builder.add(begin, polygons.ends[i]);
   if (builder.triangles.empty()) fail(TETCAST_ERROR_DATA, "%s: holds no triangles", path);
   surface->vertex_count = static_cast<int64_t>(builder.points.size() / 3);
   surface->triangle_count = static_cast<int64_t>(builder.triangles.size() / 3);
@@ -203,7 +204,8 @@ static void read_surface(const char *path, TetcastSurface *surface) {
 TetcastStatus tetcast_surface_read(TetcastContext *context, const char *path, TetcastSurface *surface) {
   if (surface) *surface = {};
   if (!context || !path || !surface) {
-    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "tetcast_surface_read: context, path and surface must not be NULL");
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
+                                 "tetcast_surface_read: context, path and surface must not be NULL");
   }
   const TetcastStatus status = fence(context, path, [&] { read_surface(path, surface); });
   if (status != TETCAST_OK) tetcast_surface_release(surface);

@@ -12,9 +12,9 @@ namespace tcv {
 
 // Points, and polygons one after the other, as a file has them.
 struct Polygons {
-  std::vector<double> points;    // [n][3]
-  std::vector<int64_t> corners;  // indices of points
-  std::vector<size_t> ends;      // polygon i is corners[ends[i − 1] … ends[i])
+  std::vector<double> points;   // [n][3]
+  std::vector<int64_t> corners; // indices of points
+  std::vector<size_t> ends;     // polygon i is corners[ends[i − 1] … ends[i])
 
   int64_t point_count() const { return static_cast<int64_t>(points.size() / 3); }
   void end_polygon() { ends.push_back(corners.size()); }
@@ -25,7 +25,7 @@ class Scanner {
 public:
   Scanner(const char *path, const std::string &text) : path_(path), at_(text.data()), end_(at_ + text.size()) {}
 
-  bool next_line(); // to the next line that is neither empty nor a comment (#); false at the end
+  bool next_line();   // to the next line that is neither empty nor a comment (#); false at the end
   std::string word(); // the next of this line; "" at its end
   double number(const char *what);
   int64_t integer(const char *what);

@@ -13,8 +13,8 @@ enum Encoding { TEXT, LITTLE, BIG };
 
 struct Property {
   std::string name;
-  char type;  // 'i' signed, 'u' unsigned, 'f' floating
-  int size;   // bytes
+  char type;           // 'i' signed, 'u' unsigned, 'f' floating
+  int size;            // bytes
   char count_type = 0; // of a list
   int count_size = 0;  // 0: no list
 };
@@ -30,8 +30,9 @@ bool parse_type(const std::string &name, char *type, int *size) {
     const char *name;
     char type;
     int size;
-  } types[] = {{"char", 'i', 1},  {"uchar", 'u', 1},  {"short", 'i', 2},  {"ushort", 'u', 2}, {"int", 'i', 4},     {"uint", 'u', 4},
-               {"float", 'f', 4}, {"double", 'f', 8}, {"int8", 'i', 1},   {"uint8", 'u', 1},  {"int16", 'i', 2},   {"uint16", 'u', 2},
+  } types[] = {{"char", 'i', 1},  {"uchar", 'u', 1},  {"short", 'i', 2},   {"ushort", 'u', 2},
+               {"int", 'i', 4},   {"uint", 'u', 4},   {"float", 'f', 4},   {"double", 'f', 8},
+               {"int8", 'i', 1},  {"uint8", 'u', 1},  {"int16", 'i', 2},   {"uint16", 'u', 2},
                {"int32", 'i', 4}, {"uint32", 'u', 4}, {"float32", 'f', 4}, {"float64", 'f', 8}};
   for (const auto &entry : types) {
     if (name != entry.name) continue;
@@ -87,7 +88,7 @@ std::vector<Element> parse_header(const char *path, const std::string &bytes, En
 class Values {
 public:
   Values(const char *path, const std::string &bytes, size_t body, Encoding encoding)
-      : path_(path), encoding_(encoding), text_(encoding == TEXT ? bytes.substr(body) : std::string()), scanner_(path, text_),
+      : encoding_(encoding), text_(encoding == TEXT ? bytes.substr(body) : std::string()), scanner_(path, text_),
         at_(bytes.data() + body), end_(bytes.data() + bytes.size()) {}
 
   void begin(const Element &element, int64_t i) {
@@ -116,7 +117,6 @@ private:
     return size == 1 ? as<int8_t>(bytes) : size == 2 ? as<int16_t>(bytes) : as<int32_t>(bytes);
   }
 
-  const char *path_;
   Encoding encoding_;
   std::string text_;
   tcv::Scanner scanner_;
@@ -124,7 +124,9 @@ private:
 };
 
 // A number that counts or indexes. Out of range it becomes −1, which later checks refuse.
-int64_t whole(double value) { return value >= 0 && value <= 1e15 && value == std::floor(value) ? static_cast<int64_t>(value) : -1; }
+int64_t whole(double value) {
+  return value >= 0 && value <= 1e15 && value == std::floor(value) ? static_cast<int64_t>(value) : -1;
+}
 
 } // namespace
 
@@ -154,7 +156,8 @@ Polygons read_ply(const char *path) {
           continue;
         }
         const int64_t count = whole(values.value(element, i, property.count_type, property.count_size));
-        if (count < 0) fail(TETCAST_ERROR_DATA, "%s: %s %lld: bad count", path, element.name.c_str(), static_cast<long long>(i));
+        if (count < 0)
+          fail(TETCAST_ERROR_DATA, "%s: %s %lld: bad count", path, element.name.c_str(), static_cast<long long>(i));
         for (int64_t j = 0; j < count; ++j) {
           const double value = values.value(element, i, property.type, property.size);
           if (corners) result.corners.push_back(whole(value));

@@ -27,7 +27,7 @@ bool Scanner::next_line() {
 std::string Scanner::word() {
   while (word_ < line_end_ && static_cast<unsigned char>(*word_) <= ' ') ++word_;
   const char *start = word_;
-  while (word_ < line_end_ && static_cast<unsigned char>(*word_) > ' ') ++word_;
+  while (word_<line_end_ &&static_cast<unsigned char>(*word_)> ' ') ++word_;
   return std::string(start, word_);
 }
 
@@ -164,7 +164,8 @@ Polygons read_obj(const char *path) {
         int64_t index = 0; // "7", "7/1", "7//3" or "7/1/3", from 1, or from the end when negative
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
         if (error != std::errc() || (end != word.data() + word.size() && *end != '/')) {
-          fail(TETCAST_ERROR_DATA, "%s: line %d: a vertex index expected, not '%.40s'", path, scanner.line(), word.c_str());
+          fail(TETCAST_ERROR_DATA, "%s: line %d: a vertex index expected, not '%.40s'", path, scanner.line(),
+               word.c_str());
         }
         result.corners.push_back(index < 0 ? result.point_count() + index : index - 1);
       }

@@ -59,7 +59,8 @@ static DataArray wrap(const TetcastArray &values, int components) {
   array->SetNumberOfTuples(values.count);
   char *target = static_cast<char *>(array->GetVoidPointer(0));
   for (int64_t i = 0; i < values.count; ++i) {
-    std::memcpy(target + i * tuple, static_cast<const char *>(values.data) + i * values.stride, static_cast<size_t>(tuple));
+    std::memcpy(target + i * tuple, static_cast<const char *>(values.data) + i * values.stride,
+                static_cast<size_t>(tuple));
   }
   return array;
 }
@@ -120,7 +121,8 @@ static void add_field(vtkUnstructuredGrid *grid, const TetcastMesh *mesh, const 
   const DataArray array = wrap(values, 1);
   array->SetName(written.c_str());
   attributes->AddArray(array);
-  if (!attributes->GetScalars()) attributes->SetActiveScalars(written.c_str()); // the first is what readers show by default
+  if (!attributes->GetScalars())
+    attributes->SetActiveScalars(written.c_str()); // the first is what readers show by default
 }
 
 static vtkSmartPointer<vtkUnstructuredGrid> make_grid(const TetcastMesh *mesh, int count, const char *const *names,
@@ -144,7 +146,8 @@ public:
     static std::atomic<unsigned> counter{0};
     struct stat status;
     if (stat(target, &status) == 0 && !S_ISREG(status.st_mode)) {
-      fail(TETCAST_ERROR_IO, "%s: can't be written: is %s", target, S_ISDIR(status.st_mode) ? "a folder" : "not a regular file");
+      fail(TETCAST_ERROR_IO, "%s: can't be written: is %s", target,
+           S_ISDIR(status.st_mode) ? "a folder" : "not a regular file");
     }
     for (;;) {
       path_ = target_ + ".part" + std::to_string(getpid()) + "-" + std::to_string(counter++);

@@ -17,8 +17,8 @@
 
 namespace {
 
-// Looks at binary data before VTK does, which divides by sizes that may be zero, writes blocks that are larger than they
-// should be where they don't fit, and is content with the start of data that end early.
+// Looks at binary data before VTK does, which divides by sizes that may be zero, writes blocks that are larger than
+// they should be where they don't fit, and is content with the start of data that end early.
 class Parser : public vtkXMLDataParser {
 public:
   static Parser *New() { VTK_STANDARD_NEW_BODY(Parser); }
@@ -107,7 +107,8 @@ protected:
 
   int ReadPiece(vtkXMLDataElement *element) override {
     if (!Base::ReadPiece(element)) return 0;
-    const vtkIdType points = this->GetNumberOfPointsInPiece(this->Piece), cells = this->GetNumberOfCellsInPiece(this->Piece);
+    const vtkIdType points = this->GetNumberOfPointsInPiece(this->Piece),
+                    cells = this->GetNumberOfCellsInPiece(this->Piece);
     const int64_t limit = 256 * tcv::file_size(this->GetFileName()); // compressed, the best mesh stays far below
     if (points >= 0 && cells >= 0 && points <= limit && cells <= limit) return 1;
     vtkErrorMacro("piece " << this->Piece << " claims " << points << " points and " << cells
@@ -115,8 +116,8 @@ protected:
     return 0;
   }
 
-  int ReadArrayValues(vtkXMLDataElement *element, vtkIdType index, vtkAbstractArray *array, vtkIdType start, vtkIdType count,
-                      vtkXMLReader::FieldType type) override {
+  int ReadArrayValues(vtkXMLDataElement *element, vtkIdType index, vtkAbstractArray *array, vtkIdType start,
+                      vtkIdType count, vtkXMLReader::FieldType type) override {
     uint64_t bits = 0; // of a value; strings have any length
     if (array->GetDataType() == VTK_BIT) bits = 1;
     else if (array->GetDataType() != VTK_STRING) bits = 8 * static_cast<uint64_t>(array->GetDataTypeSize());
