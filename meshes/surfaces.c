@@ -95,15 +95,13 @@ static void add_sphere(const double center[3], double radius, int n) {
 }
 
 typedef struct Tube {
-  double center[3];
   int p, q;             /* it winds p times around the z axis, and q times around … */
   double ring, winding; /* … the circle of radius `ring` about that axis, at distance `winding` from it */
   double thickness;     /* its own radius */
   int n, m;             /* pairs of triangles along and around it */
-  char axis;            /* 'x': turned to lie around the x axis instead */
 } Tube;
 
-/* With p = 1, q = 0, winding = 0 a torus, with p = 2, q = 3 a trefoil knot. */
+/* With p = 2, q = 3: a trefoil knot. */
 static void add_tube(Tube tube) {
   const int first = point_count;
   for (int i = 0; i < tube.n; i++) {
@@ -122,10 +120,7 @@ static void add_tube(Tube tube) {
       double x[3] = {r * cos(u), r * sin(u), tube.winding * sin(v)};
       for (int k = 0; k < 3; k++)
         x[k] += tube.thickness * (cos(w) * normal[k] + sin(w) * side[k]);
-      if (tube.axis == 'x')
-        add_point(tube.center[0] + x[2], tube.center[1] + x[0], tube.center[2] + x[1]);
-      else
-        add_point(tube.center[0] + x[0], tube.center[1] + x[1], tube.center[2] + x[2]);
+      add_point(x[0], x[1], x[2]);
     }
   }
   for (int i = 0; i < tube.n; i++)
@@ -156,12 +151,12 @@ static const double origin[3] = {0, 0, 0};
 
 static void ball(const char *folder) {
   start();
-  add_sphere(origin, 32, 22);
+  add_sphere(origin, 36, 22);
   write_smesh(folder, "ball.smesh");
 }
 
-/* six hot balls around a seventh */
-static void molecule(const char *folder) {
+/* a cold box around seven hot balls */
+static void box(const char *folder) {
   start();
   add_box(1.5, 1, 1);
   add_cavity(0, 0, 0, 0.32, 10);
@@ -171,22 +166,12 @@ static void molecule(const char *folder) {
   add_cavity(-0.45, 0.5, 0.5, 0.18, 6);
   add_cavity(-1.15, 0.5, -0.1, 0.12, 5);
   add_cavity(1.1, -0.5, 0.4, 0.14, 5);
-  write_smesh(folder, "heat.smesh");
-}
-
-/* a ring across a channel, and a ball behind it */
-static void channel(const char *folder) {
-  start();
-  add_box(2, 1, 1);
-  add_tube((Tube){{-0.6, 0, 0}, 1, 0, 0.55, 0, 0.17, 72, 22, 'x'});
-  add_hole(-0.6, 0.55, 0);
-  add_cavity(0.75, 0, 0, 0.38, 12);
-  write_smesh(folder, "flow.smesh");
+  write_smesh(folder, "box.smesh");
 }
 
 static void trefoil(const char *folder) {
   start();
-  add_tube((Tube){{0, 0, 0}, 2, 3, 2, 0.9, 0.5, 220, 20, 'z'});
+  add_tube((Tube){.p = 2, .q = 3, .ring = 2, .winding = 0.9, .thickness = 0.48, .n = 240, .m = 20});
   write_smesh(folder, "trefoil.smesh");
 }
 
@@ -204,8 +189,7 @@ int main(int argc, char **argv) {
     return 2;
   }
   ball(argv[1]);
-  molecule(argv[1]);
-  channel(argv[1]);
+  box(argv[1]);
   trefoil(argv[1]);
   shell(argv[1]);
   return 0;

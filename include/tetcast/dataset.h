@@ -53,7 +53,8 @@ TETCAST_API TetcastStatus tetcast_dataset_mesh(const TetcastDataset *dataset, Te
 /* The scalar that `selector` names: "NAME", "NAME:2" (component, from 0) or "NAME:mag" (Euclidean length); an array whose name
  * contains a colon is found by its whole name first; a point array before a cell array of the same name. Without component,
  * an array of several is taken by magnitude. NULL: the active scalars of the points, of the cells, else the first point array of one
- * component, the first cell array of one component, the first array. An unknown name or component is TETCAST_ERROR_ARGUMENT and the
+ * component, the first cell array of one component, the first array; arrays that number points or cells (global ids) only when there is
+ * nothing else. A file without arrays is TETCAST_ERROR_DATA. An unknown name or component is TETCAST_ERROR_ARGUMENT and the
  * message lists those there are. Cell arrays follow the tetrahedra the cells were cut into. The dataset must outlive the field,
  * which the caller destroys. `name` (may be NULL) receives the selector that selects the same again, valid while the dataset lives. */
 TETCAST_API TetcastStatus tetcast_dataset_field(const TetcastDataset *dataset, const char *selector, TetcastField **field,

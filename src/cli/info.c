@@ -107,7 +107,7 @@ static void print_arrays(const Info *info) {
     const int length = (int)strlen(info->arrays[i].about.name);
     width = length > width && length <= 40 ? length : width;
   }
-  printf("arrays        %s\n", info->array_count ? "" : "none");
+  puts(info->array_count ? "arrays" : "arrays        none");
   for (int i = 0; i < info->array_count; i++) {
     const InfoArray *array = &info->arrays[i];
     const int indent = printf("  %-5s  %-*s  %-7s  ", array->about.association == TETCAST_CELL ? "cell" : "point",

@@ -15,7 +15,8 @@ int cli_json_numbers(const json_t *value, int most, double *values);
 /* An array of numbers. */
 json_t *cli_json_array(const double *values, int count);
 
-/* Writes and releases `object`: indented, numbers with the 17 digits that restore a double. False after a message. */
+/* Writes and releases `object`, whose keys need no escapes: numbers with the 17 digits that restore a double. False
+ * after a message. */
 bool cli_json_write(const char *path, json_t *object);
 
 #endif

@@ -66,7 +66,8 @@ static void cross(const double a[3], const double b[3], double c[3]) {
     c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
-/* Circumradius by shortest edge. From corner 0, the centre is Σ |a|² (b × c) / 2 a·(b × c) over the edges a, b, c in turn. */
+/* Circumradius by shortest edge. From corner 0, the centre is Σ |a|² (b × c) / 2 a·(b × c) over its edges a, b, c in
+ * turn. */
 static double radius_edge_ratio(double x[4][3]) {
   double shortest = HUGE_VAL, longest = 0, e[3][3], normal[3], center[3] = {0, 0, 0};
   for (int i = 0; i < 4; i++)
@@ -107,7 +108,7 @@ static void print_summary(const Job *job, const TetcastMesh *mesh) {
 
 typedef enum Phase { PHASE_READ, PHASE_MESH, PHASE_FIELD, PHASE_WRITE, PHASE_END } Phase;
 
-/* What TetGen says when it dies on an assertion would stand beside our own message: standard error is put aside meanwhile. */
+/* What TetGen says when it dies on an assertion would stand beside our own message: standard error is put aside. */
 static int hide_errors(FILE **aside) {
   *aside = tmpfile();
   const int saved = *aside ? fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3) : -1;
@@ -176,7 +177,8 @@ static TetcastStatus make_single(TetcastContext *context, TetcastMesh **mesh) {
   return status;
 }
 
-static TetcastStatus make_field(const Job *job, TetcastContext *context, const TetcastMesh *mesh, TetcastField **field) {
+static TetcastStatus make_field(const Job *job, TetcastContext *context, const TetcastMesh *mesh,
+                                TetcastField **field) {
   const int64_t count = tetcast_mesh_vertex_count(mesh);
   double *values = cli_allocate(sizeof *values * (size_t)count);
   TetcastStatus status = field_compute(context, mesh, &job->field, values);

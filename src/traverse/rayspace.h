@@ -46,15 +46,16 @@ static inline TcPoint tc_project(const TetcastVolume *volume, const TcRay *ray, 
   return point;
 }
 
-double tc_edge_tie(const TcPoint *a, const TcPoint *b);
+double tc_edge_close(const TcPoint *a, const TcPoint *b);
 
-/* a × b, never zero and with the exact sign for the points given; where it is exactly zero, the sign for points moved by an
- * infinitesimal amount (tc_edge_tie). tc_edge(a, b) = −tc_edge(b, a).
+/* a × b to a relative error of 2^−44, never zero, with the exact sign for the points given; where it is exactly zero, the sign for
+ * points moved by an infinitesimal amount (tc_edge_close). tc_edge(a, b) = −tc_edge(b, a).
  *
- * Rounding is monotonic: where the two rounded products differ, their difference has the exact sign. */
+ * Where nothing much cancels, the difference of the rounded products will do. That edges have relative accuracy matters: they are
+ * the weights of depth and value, also on faces that are seen almost edge-on, where all three nearly cancel. */
 static inline double tc_edge(const TcPoint *a, const TcPoint *b) {
-  const double e = a->x * b->y - a->y * b->x;
-  return e != 0 ? e : tc_edge_tie(a, b);
+  const double p = a->x * b->y, e = p - a->y * b->x;
+  return fabs(e) > 0x1p-8 * fabs(p) ? e : tc_edge_close(a, b);
 }
 
 /* Whether the ray crosses a triangle whose edges ab, bc, ca have these values. */

@@ -22,6 +22,7 @@ finish() {
 }
 
 needs() {
+  local adapter
   for adapter; do
     if ! "$tetcast" --version | grep -q "^adapters:.*$adapter"; then
       echo "skipped: built without $adapter"
@@ -74,6 +75,7 @@ warn() {
 }
 
 exists() {
+  local name
   checks=$((checks + 1))
   for name; do [ -s "$name" ] || fail "$name is missing or empty"; done
 }

@@ -40,7 +40,7 @@ void near(Extended value, Extended expected, Extended tolerance) {
 }
 
 std::array<Extended, 4> cast(const Scene &scene, Vector<Extended> origin, Vector<Extended> direction) {
-  return Caster<Extended>(scene).ray_rgba({origin, direction});
+  return Caster<Extended>(scene).ray_rgba({origin, direction, {}});
 }
 
 const Transfer gray = {{{0, 0.25, 0.5, 1}}, {{0, 3}}, {}};
@@ -194,7 +194,7 @@ void along_faces_and_edges(void **) {
   const Caster<Extended> caster(scene);
   const Extended third = std::sqrt(1 / 3.0L), half = std::sqrt(0.5L);
   const auto depth = [&](Vector<Extended> origin, Vector<Extended> direction) {
-    return -std::log1p(-caster.ray_rgba({origin, direction})[3]);
+    return -std::log1p(-caster.ray_rgba({origin, direction, {}})[3]);
   };
   for (Extended x : {0.125L, 0.25L, 0.3125L, 0.5L, 0.75L})
     for (Extended y : {0.25L, 0.3125L, 0.5L}) {
@@ -232,6 +232,29 @@ void scaling(void **) {
   }
 }
 
+/* Far from zero, where the spacing of doubles is a hundred thousandth of a cell. */
+void translation(void **) {
+  Scene scene = scene_of(cube(4, 0, [](auto &p) { return p[0] * p[0] + p[2]; }),
+                         {{{0, 1, 0, 0}, {2, 0, 0, 1}}, {{0.5, 0}, {0.5, 90}, {0.6, 90}, {0.6, 0}}, {}});
+  scene.camera.target[0] += 0.3125;
+  for (const bool orthographic : {true, false}) {
+    scene.camera.orthographic = orthographic;
+    scene.camera.fovy = 35;
+    const auto expected = Caster<Extended>(scene).pixel_rgba(1, 1);
+    Scene moved = scene;
+    for (auto &p : moved.mesh.points)
+      for (double &x : p)
+        x += 0x1p34;
+    for (size_t k = 0; k < 3; k++) {
+      moved.camera.eye[k] += 0x1p34;
+      moved.camera.target[k] += 0x1p34;
+    }
+    const auto rgba = Caster<Extended>(moved).pixel_rgba(1, 1);
+    for (size_t c = 0; c < 4; c++)
+      near(rgba[c], expected[c], 1e-18L);
+  }
+}
+
 #ifdef TETCAST_REFERENCE_QUAD
 void wider_type_agrees(void **) {
   const auto field = [](auto &p) { return std::sin(5 * p[0]) * p[1] + std::cos(7 * p[2] * p[0]); };
@@ -263,7 +286,7 @@ int main() {
     cmocka_unit_test(steps),                cmocka_unit_test(opacity),
     cmocka_unit_test(thin_and_thick),       cmocka_unit_test(transparent_and_left_out),
     cmocka_unit_test(picture_is_upright),   cmocka_unit_test(scaling),
-    cmocka_unit_test(along_faces_and_edges),
+    cmocka_unit_test(along_faces_and_edges), cmocka_unit_test(translation),
 #ifdef TETCAST_REFERENCE_QUAD
     cmocka_unit_test(wider_type_agrees),
 #endif

@@ -20,6 +20,7 @@ namespace reference {
 template <class Real> struct Ray {
   Vector<Real> origin;
   Vector<Real> direction; /* of length one */
+  Vector<Real> aside{};   /* to be added to the origin: the sum may have more digits than Real, far from zero */
 };
 
 /* The ray through the point (x, y) of the picture: 0, 0 is its upper left corner and width, height its lower right. */
@@ -34,8 +35,8 @@ template <class Real> Ray<Real> camera_ray(const Scene &scene, Real x, Real y) {
   const Real upward = (scene.height - 2 * y) / scene.height * half;
   const Vector<Real> offset = across * right + upward * up;
   if (camera.orthographic)
-    return {eye + offset, forward};
-  return {eye, normalized(forward + offset)};
+    return {eye, forward, offset};
+  return {eye, normalized(forward + offset), {}};
 }
 
 /* Six times the signed volume; `scale` receives the sum of the products' magnitudes that it is made of. */
@@ -142,7 +143,7 @@ public:
     for (size_t i : candidates(ray)) {
       std::array<Vector<Real>, 4> p;
       for (size_t j = 0; j < 4; j++)
-        p[j] = point(cells_[i].vertices[j]) - ray.origin;
+        p[j] = point(cells_[i].vertices[j]) - ray.origin - ray.aside;
       const Real s[4] = {cells_[i].values[0], cells_[i].values[1], cells_[i].values[2], cells_[i].values[3]};
       Segment<Real> segment;
       if (clip(p, cells_[i].vertices, s, ray.direction, segment))
@@ -222,7 +223,8 @@ private:
 
   /* Cells whose bounding sphere, made larger by far more than double arithmetic loses, the ray meets. */
   std::vector<size_t> candidates(const Ray<Real> &ray) const {
-    const double ox = double(ray.origin.x), oy = double(ray.origin.y), oz = double(ray.origin.z);
+    const Vector<Real> from = ray.origin + ray.aside;
+    const double ox = double(from.x), oy = double(from.y), oz = double(from.z);
     const double dx = double(ray.direction.x), dy = double(ray.direction.y), dz = double(ray.direction.z);
     constexpr size_t block = 256;
     std::vector<size_t> found;

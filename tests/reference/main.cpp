@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <set>
 #include <thread>
 
 #include "caster.h"
@@ -13,27 +12,27 @@ using namespace reference;
 namespace {
 
 const char usage[] =
-  "usage: tetcast_reference SCENE.json [IMAGE.tif] [options]\n"
-  "       tetcast_reference --compare A.tif B.tif WxH [--tolerance X]\n"
+  "usage: tetcast_reference SCENE.json [IMAGE.tif [OTHER.tif]] [options]\n"
   "       tetcast_reference --describe SCENE.json\n"
-  "Computes the picture of a scene file (tetcast render --save-scene) by brute force and compares IMAGE.tif, RGBA of\n"
-  "64 bits, with it. Exit code 1: they differ by more than the tolerance.\n"
+  "Computes the picture of a scene file (tetcast render --save-scene) by brute force and compares one or two images,\n"
+  "RGBA of 64 bits, with it; two also with each other, in all pixels. Exit code 1: they differ by more.\n"
   "  --tolerance X   largest difference of a channel, default 1e-12\n"
-  "  --every N       only each N-th pixel, counted along the rows\n"
+  "  --every N       only each N-th pixel, counted along the rows, and where the two images differ\n"
   "  --pixel X,Y     only this pixel, from 0,0 at the top left; may be repeated; its values are printed\n"
   "  --quad          in __float128 instead of long double, about fifty times slower\n"
   "  --threads N     default: all processors\n"
   "  --transfer FILE reads the transfer function from this file instead: opacities are saved in scenes as extinction\n"
   "  --output FILE   writes what was computed, zero where nothing was\n"
-  "--compare compares two images; --describe prints xmin xmax ymin ymax zmin zmax, lowest and highest finite value,\n"
-  "x y z of a point inside a cell, and the number of cells.\n";
+  "Pixels behind which cells overlap, so that there is no right answer, are left out and counted.\n"
+  "--describe prints xmin xmax ymin ymax zmin zmax, lowest and highest finite value, x y z of a point inside a cell,\n"
+  "and the number of cells.\n";
 
 struct Options {
   std::vector<std::string> paths;
   double tolerance = 1e-12;
   int64_t every = 1;
   std::vector<std::array<int64_t, 2>> pixels;
-  bool quad = false, compare = false, describe = false;
+  bool quad = false, describe = false;
   unsigned threads = std::max(1U, std::thread::hardware_concurrency());
   std::string transfer, output;
 };
@@ -62,8 +61,6 @@ Options parse(int argc, char **argv) {
       options.pixels.push_back({x, y});
     } else if (word == "--quad") {
       options.quad = true;
-    } else if (word == "--compare") {
-      options.compare = true;
     } else if (word == "--describe") {
       options.describe = true;
     } else if (word == "--threads") {
@@ -78,37 +75,53 @@ Options parse(int argc, char **argv) {
       options.paths.push_back(word);
     }
   }
-  const size_t least = options.compare ? 3 : 1, most = options.compare ? 3 : options.describe ? 1 : 2;
-  if (options.paths.size() < least || options.paths.size() > most)
+  if (options.paths.empty() || options.paths.size() > (options.describe ? 1 : 3))
     throw Usage("wrong number of files");
   return options;
 }
 
+/* The largest difference of a channel; a NaN is infinitely far from everything. */
+double distance(const std::vector<double> &a, const std::vector<double> &b, size_t pixel) {
+  double largest = 0;
+  for (size_t i = 4 * pixel; i < 4 * pixel + 4; i++)
+    largest = std::max(largest, std::isnan(a[i] - b[i]) ? HUGE_VAL : std::abs(a[i] - b[i]));
+  return largest;
+}
+
 /* Indices of the pixels to be computed. */
-std::vector<size_t> choose(const Options &options, int64_t width, int64_t height) {
+std::vector<size_t> choose(const Options &options, const Scene &scene, const std::vector<std::vector<double>> &images) {
   std::vector<size_t> chosen;
   for (const auto &[x, y] : options.pixels) {
-    if (x < 0 || y < 0 || x >= width || y >= height)
+    if (x < 0 || y < 0 || x >= scene.width || y >= scene.height)
       throw Usage("--pixel: outside the picture");
-    chosen.push_back(size_t(y * width + x));
+    chosen.push_back(size_t(y * scene.width + x));
   }
-  if (chosen.empty())
-    for (int64_t i = 0; i < width * height; i += options.every)
-      chosen.push_back(size_t(i));
+  if (options.pixels.empty())
+    for (int64_t i = 0; i < scene.width * scene.height; i++)
+      if (i % options.every == 0 ||
+          (images.size() > 1 && distance(images[0], images[1], size_t(i)) > options.tolerance))
+        chosen.push_back(size_t(i));
   return chosen;
 }
 
-template <class Real>
-std::vector<double> compute(const Scene &scene, const std::vector<size_t> &chosen, unsigned thread_count) {
+struct Truth {
+  std::vector<double> rgba;
+  std::vector<char> folded; /* cells overlap behind this pixel */
+};
+
+template <class Real> Truth compute(const Scene &scene, const std::vector<size_t> &chosen, unsigned thread_count) {
   const Caster<Real> caster(scene);
-  std::vector<double> image(size_t(scene.width * scene.height * 4));
+  const size_t count = size_t(scene.width * scene.height);
+  Truth truth{std::vector<double>(4 * count), std::vector<char>(count)};
   std::atomic<size_t> next{0};
   const auto work = [&] {
     for (size_t i = next++; i < chosen.size(); i = next++) {
-      const int64_t index = int64_t(chosen[i]);
-      const auto rgba = caster.pixel_rgba(index % scene.width, index / scene.width);
+      const size_t pixel = chosen[i];
+      bool folded = false;
+      const auto rgba = caster.pixel_rgba(int64_t(pixel) % scene.width, int64_t(pixel) / scene.width, &folded);
       for (size_t c = 0; c < 4; c++)
-        image[chosen[i] * 4 + c] = double(rgba[c]);
+        truth.rgba[pixel * 4 + c] = double(rgba[c]);
+      truth.folded[pixel] = folded;
     }
   };
   std::vector<std::thread> threads;
@@ -117,45 +130,60 @@ std::vector<double> compute(const Scene &scene, const std::vector<size_t> &chose
   work();
   for (auto &thread : threads)
     thread.join();
-  return image;
+  return truth;
 }
 
-/* Prints how far `image` is from `truth`; whether that is within the tolerance. */
-bool compare(const std::vector<double> &truth, const std::vector<double> &image, const std::vector<size_t> &chosen,
-             int64_t width, double tolerance) {
-  double overall = 0, alpha = 0;
-  int64_t beyond = 0;
-  for (size_t pixel : chosen)
-    alpha += truth[pixel * 4 + 3] / double(chosen.size());
+/* Prints how far `image` is from `expected`, to which `worst` is raised; whether that is within the tolerance. */
+bool compare(const char *what, const std::vector<double> &expected, const std::vector<double> &image,
+             const std::vector<size_t> &pixels, int64_t width, double tolerance, double &worst) {
+  double overall = 0;
+  std::printf("%s, %zu pixels:\n", what, pixels.size());
   for (size_t c = 0; c < 4; c++) {
     double largest = -1, squares = 0;
     size_t where = 0;
-    for (size_t pixel : chosen) {
-      const double difference = std::abs(image[pixel * 4 + c] - truth[pixel * 4 + c]);
+    for (size_t pixel : pixels) {
+      const double difference = std::abs(image[pixel * 4 + c] - expected[pixel * 4 + c]);
       const double error = std::isnan(difference) ? HUGE_VAL : difference;
       squares += error * error;
-      beyond += error > tolerance;
       if (error > largest) {
         largest = error;
         where = pixel;
       }
     }
-    std::printf("%c  max %.2e  rms %.2e  worst at %zu,%zu: %.17g, should be %.17g\n", "RGBA"[c], largest,
-                std::sqrt(squares / double(chosen.size())), where % size_t(width), where / size_t(width),
-                image[where * 4 + c], truth[where * 4 + c]);
+    std::printf("  %c  max %.2e  rms %.2e  worst at %zu,%zu: %.17g, should be %.17g\n", "RGBA"[c], largest,
+                std::sqrt(squares / double(pixels.size())), where % size_t(width), where / size_t(width),
+                image[where * 4 + c], expected[where * 4 + c]);
     overall = std::max(overall, largest);
   }
-  std::printf("%zu pixels of average alpha %.3f compared, max %.2e, %lld values beyond %g\n", chosen.size(), alpha,
-              overall, static_cast<long long>(beyond), tolerance);
-  return overall <= tolerance;
+  const auto beyond = std::count_if(pixels.begin(), pixels.end(),
+                                    [&](size_t pixel) { return distance(expected, image, pixel) > tolerance; });
+  std::printf("  %td pixels beyond %g\n", beyond, tolerance);
+  worst = std::max(worst, overall);
+  return beyond == 0;
 }
 
-bool compare_files(const Options &options) {
-  int width, height;
-  if (std::sscanf(options.paths[2].c_str(), "%dx%d", &width, &height) != 2)
-    throw Usage("--compare needs WxH");
-  return compare(read_image(options.paths[0], width, height), read_image(options.paths[1], width, height),
-                 choose(options, width, height), width, options.tolerance);
+/* Compares the images with the truth and with each other. */
+bool judge(const Scene &scene, const Truth &truth, const std::vector<size_t> &chosen,
+           const std::vector<std::vector<double>> &images, double tolerance) {
+  std::vector<size_t> sound, all;
+  double alpha = 0, worst = 0;
+  for (size_t pixel : chosen)
+    if (!truth.folded[pixel]) {
+      sound.push_back(pixel);
+      alpha += truth.rgba[pixel * 4 + 3];
+    }
+  for (size_t pixel = 0; pixel < truth.folded.size(); pixel++)
+    if (!truth.folded[pixel])
+      all.push_back(pixel);
+  const size_t left_out = chosen.size() - sound.size();
+  bool good = left_out * 50 < chosen.size(); /* a mesh of which there is no right picture tests nothing */
+  for (size_t i = 0; i < images.size(); i++)
+    good &= compare(i ? "other" : "image", truth.rgba, images[i], sound, scene.width, tolerance, worst);
+  if (images.size() > 1)
+    good &= compare("other against image", images[0], images[1], all, scene.width, tolerance, worst);
+  std::printf("%s: max %.2e, average alpha %.3f in %zu pixels; %zu left out because cells overlap\n",
+              good ? "agreed" : "DIFFERENT", worst, alpha / double(sound.size()), sound.size(), left_out);
+  return good;
 }
 
 void describe(const Options &options) {
@@ -191,13 +219,14 @@ bool run(const Options &options) {
     describe(options);
     return true;
   }
-  if (options.compare)
-    return compare_files(options);
   Scene scene = read_scene(options.paths[0]);
   if (!options.transfer.empty())
     scene.transfer = read_transfer(options.transfer);
-  const std::vector<size_t> chosen = choose(options, scene.width, scene.height);
-  std::vector<double> truth;
+  std::vector<std::vector<double>> images;
+  for (size_t i = 1; i < options.paths.size(); i++)
+    images.push_back(read_image(options.paths[i], scene.width, scene.height));
+  const std::vector<size_t> chosen = choose(options, scene, images);
+  Truth truth;
   if (options.quad)
 #ifdef TETCAST_REFERENCE_QUAD
     truth = compute<Quad>(scene, chosen, options.threads);
@@ -207,16 +236,14 @@ bool run(const Options &options) {
   else
     truth = compute<Extended>(scene, chosen, options.threads);
   if (!options.output.empty())
-    write_image(options.output, truth, scene.width, scene.height);
+    write_image(options.output, truth.rgba, scene.width, scene.height);
   for (size_t i = 0; i < options.pixels.size(); i++) {
-    const double *rgba = &truth[chosen[i] * 4];
-    std::printf("%zu,%zu: %.17g %.17g %.17g %.17g\n", chosen[i] % size_t(scene.width), chosen[i] / size_t(scene.width),
-                rgba[0], rgba[1], rgba[2], rgba[3]);
+    const double *rgba = &truth.rgba[chosen[i] * 4];
+    std::printf("%lld,%lld: %.17g %.17g %.17g %.17g%s\n", static_cast<long long>(options.pixels[i][0]),
+                static_cast<long long>(options.pixels[i][1]), rgba[0], rgba[1], rgba[2], rgba[3],
+                truth.folded[chosen[i]] ? ", but cells overlap" : "");
   }
-  if (options.paths.size() < 2)
-    return true;
-  return compare(truth, read_image(options.paths[1], scene.width, scene.height), chosen, scene.width,
-                 options.tolerance);
+  return images.empty() || judge(scene, truth, chosen, images, options.tolerance);
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#define _POSIX_C_SOURCE 200809L /* mkdtemp, fileno */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,6 +13,10 @@
 
 #include <tetcast/tetcast.h>
 #include <tetcast/tetgen.h>
+
+/* TetGen leaks its work space when it gives up: what the leak sanitizer asks for, unused without it. */
+TETCAST_API const char *__lsan_default_suppressions(void);
+const char *__lsan_default_suppressions(void) { return "leak:tetgenmesh\n"; }
 
 /* ── surfaces ── */
 
@@ -191,7 +196,8 @@ static void test_cavities(void **state) {
   TetcastMeshHealth health;
   assert_int_equal(tetcast_mesh_health(context, mesh, &health), TETCAST_OK);
   assert_int_equal(health.components, 1);
-  assert_int_equal(health.degenerate_cells + health.inverted_cells + health.nonmanifold_faces + health.unused_vertices, 0);
+  assert_int_equal(health.degenerate_cells + health.inverted_cells, 0);
+  assert_int_equal(health.nonmanifold_faces + health.unused_vertices, 0);
   assert_true(fabs(health.boundary_area - (96 + 6 + 1.5)) < 1e-9);
   tetcast_mesh_destroy(&mesh);
   add_hole(&body, 0.5); /* in the body itself */
@@ -405,18 +411,21 @@ static void refuse_text(const char *name, const char *text, TetcastStatus status
 #define INNER "8 .5 .5 .5\n9 1 .5 .5\n10 .5 1 .5\n11 .5 .5 1\n"
 #define INNER_SIDES "3 8 9 10\n3 8 9 11\n3 9 10 11\n3 8 10 11\n"
 
-static const char cavity[] = "# a box with a cavity\n12 3 0 0\n" BOX_POINTS INNER "\n10 0\n" SIDES INNER_SIDES "1\n0 .6 .6 .6\n0\n";
+static const char cavity[] =
+  "# a box with a cavity\n12 3 0 0\n" BOX_POINTS INNER "\n10 0\n" SIDES INNER_SIDES "1\n0 .6 .6 .6\n0\n";
 
 static void test_smesh(void **state) {
   (void)state;
   accept_text("a.smesh", "8 3 0 0\n" BOX_POINTS "6 0\n" SIDES "0\n", 8);
   accept_text("a.smesh", "8 3 0 0\r\n" BOX_POINTS "6\n" SIDES, 8); /* the rest left out */
   accept_text("a.smesh", cavity, 8 - 1. / 48);
-  accept_text("a.smesh", "8 3 1 1 # attributes, markers\n0,0,0,0,5,1\n1 +2 0 0 5 1\n2 2. 2e0 0 5 1\n3 0 2 0 5 1\n4 0 0 2 5 1\n"
-                         "5 2 0 2 5 1 # last column\n\n6 2 2 2 5 1\n7 0 2 2 5 1\n6 1\n4 0 1\n 2 3 1\n4 4 5 6 7 1\n4 0 1 5 4 1\n"
-                         "4 1 2 6 5 1\n4 2 3 7 6 1\n4 3 0 4 7 1\n0\n",
+  accept_text("a.smesh",
+              "8 3 1 1 # attributes, markers\n0,0,0,0,5,1\n1 +2 0 0 5 1\n2 2. 2e0 0 5 1\n3 0 2 0 5 1\n4 0 0 2 5 1\n"
+              "5 2 0 2 5 1 # last column\n\n6 2 2 2 5 1\n7 0 2 2 5 1\n6 1\n4 0 1\n 2 3 1\n4 4 5 6 7 1\n"
+              "4 0 1 5 4 1\n4 1 2 6 5 1\n4 2 3 7 6 1\n4 3 0 4 7 1\n0\n",
               8);
-  accept_text("a.smesh", "4 3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n4\n3 1 2 3\n3 1 2 4\n3 2 3 4\n3 3 1 4\n", 1. / 6); /* from 1 */
+  accept_text("a.smesh", /* numbered from 1 */
+              "4 3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n4\n3 1 2 3\n3 1 2 4\n3 2 3 4\n3 3 1 4\n", 1. / 6);
   write_text("b.node", "4 3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n", 37);
   accept_text("b.smesh", "0\n4\n3 1 2 3\n3 1 2 4\n3 2 3 4\n3 3 1 4\n", 1. / 6);
 }
@@ -425,7 +434,8 @@ static void test_poly(void **state) {
   (void)state;
   /* a tunnel from bottom to top: two facets with a hole each */
   accept_text("a.poly",
-              "16 3 0 0\n" BOX_POINTS "8 .5 .5 0\n9 1 .5 0\n10 1 1 0\n11 .5 1 0\n12 .5 .5 2\n13 1 .5 2\n14 1 1 2\n15 .5 1 2\n"
+              "16 3 0 0\n" BOX_POINTS
+              "8 .5 .5 0\n9 1 .5 0\n10 1 1 0\n11 .5 1 0\n12 .5 .5 2\n13 1 .5 2\n14 1 1 2\n15 .5 1 2\n"
               "10 1\n2 1 5\n4 0 1 2 3\n4 8 9 10 11\n1 .75 .75 0\n2 1 5\n4 4 5 6 7\n4 12 13 14 15\n1 .75 .75 2\n"
               "1\n4 0 1 5 4\n1\n4 1 2 6 5\n1\n4 2 3 7 6\n1\n4 3 0 4 7\n"
               "1\n4 8 9 13 12\n1\n4 9 10 14 13\n1\n4 10 11 15 14\n1\n4 11 8 12 15\n"
@@ -453,8 +463,10 @@ static void test_node_and_ele(void **state) {
 
 static void test_bad_files(void **state) {
   (void)state;
-  refuse_text("a.smesh", "8 3\n" BOX_POINTS "6 0\n4 0 1 2 8\n", TETCAST_ERROR_DATA, "a.smesh:11: a corner is 8, not in [0, 7]");
-  refuse_text("a.smesh", "8 3\n" BOX_POINTS "6 0\n4 0 1 2 x\n", TETCAST_ERROR_DATA, ":11: a corner should be a whole number");
+  refuse_text("a.smesh", "8 3\n" BOX_POINTS "6 0\n4 0 1 2 8\n", TETCAST_ERROR_DATA,
+              ":11: a corner is 8, not in [0, 7]");
+  refuse_text("a.smesh", "8 3\n" BOX_POINTS "6 0\n4 0 1 2 x\n", TETCAST_ERROR_DATA,
+              ":11: a corner should be a whole number");
   refuse_text("a.smesh", "2 3\n0 0 0 0\n1 nan 0 0\n", TETCAST_ERROR_DATA, ":3: a coordinate is not finite");
   refuse_text("a.smesh", "2 3\n0 0 0 0\n1 1e999 0 0\n", TETCAST_ERROR_DATA, ":3:");
   refuse_text("a.smesh", "2 3\n0 0 0 0\n1 0 0\n", TETCAST_ERROR_DATA, ":3: a coordinate is missing");
@@ -516,5 +528,6 @@ int main(void) {
     cmocka_unit_test(test_node_and_ele), cmocka_unit_test(test_bad_files),
     cmocka_unit_test(test_truncated_and_damaged),
   };
-  return cmocka_run_group_tests(surfaces, set_up, tear_down) + cmocka_run_group_tests(files, make_folder, remove_folder);
+  return cmocka_run_group_tests(surfaces, set_up, tear_down) +
+         cmocka_run_group_tests(files, make_folder, remove_folder);
 }

@@ -89,7 +89,12 @@ static void test_defects(void **state) {
            "format=\"binary\">EAAAAAA!AAAAAAAAAAAAAAAAAA==</DataArray>"
            "</PointData>" FOUR CELLS("0 1 2 3", "4", "10")),
        "'a'"},
-      {"pieces.pvtu",
+      {"blocks.vtu", /* one block, of no size, the last of 16 bytes */
+     "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\" compressor=\"vtkZLibDataCompressor\">"
+     "<UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><PointData><DataArray type=\"Float32\" Name=\"a\" "
+     "format=\"binary\">AQAAAAAAAAAQAAAACAAAAA==eJwDAAAAAAE=</DataArray></PointData>" FOUR CELLS("0 1 2 3", "4", "10")
+     "</Piece></UnstructuredGrid></VTKFile>", "'a' has less data"},
+    {"pieces.pvtu",
        "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\"><PUnstructuredGrid><PPoints><PDataArray type=\"Float32\" "
        "NumberOfComponents=\"3\"/></PPoints><Piece Source=\"gone.vtu\"/></PUnstructuredGrid></VTKFile>",
        "piece 0"},

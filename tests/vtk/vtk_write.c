@@ -212,7 +212,7 @@ static void test_full_disk(void **state) {
     const TetcastStatus status = tetcast_dataset_write(fixture->context, path, mesh, 0, NULL, NULL);
     setrlimit(RLIMIT_FSIZE, &limit);
     assert_int_equal(status, TETCAST_ERROR_IO);
-    assert_complaint(fixture, path, "can't be written");
+    assert_complaint(fixture, path, "can't be written: File too large");
     size_t now;
     char *after = contents(path, &now);
     assert_int_equal(now, size);

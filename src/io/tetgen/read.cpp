@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdarg>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -81,9 +82,12 @@ public:
     return value;
   }
 
-  template <typename... Arguments> [[noreturn]] void fail(const char *format, Arguments... arguments) {
+  [[noreturn]] void fail(const char *format, ...) __attribute__((format(printf, 2, 3))) {
     char text[256];
-    std::snprintf(text, sizeof text, format, arguments...);
+    va_list arguments;
+    va_start(arguments, format);
+    std::vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
     tetcast_tetgen::fail(TETCAST_ERROR_DATA, "%s:%lld: %s", path_.c_str(), (long long)line_, text);
   }
 

@@ -15,8 +15,8 @@
 #include <tetgen.h>
 #undef terminatetetgen
 
-// TetGen 1.5 ends failures here: its own version frees the mesh and throws, whereupon the mesh's destructor frees it again.
-// This one comes before it when the dynamic linker looks the name up.
+// TetGen 1.5 ends failures here: its own version frees the mesh and throws, whereupon the mesh's destructor frees it
+// again. This one comes before it when the dynamic linker looks the name up.
 __attribute__((visibility("default"))) void terminatetetgen(tetgenmesh *, int code);
 void terminatetetgen(tetgenmesh *, int code) { throw code; }
 
@@ -94,8 +94,8 @@ private:
   std::vector<tetgenio::facet> facets_;
 };
 
-// Coordinates as large as 1e200 would overflow in TetGen, tiny ones underflow: a power of two brings the largest extent into
-// [1, 2), exactly. Returns its exponent.
+// Coordinates as large as 1e200 would overflow in TetGen, tiny ones underflow: a power of two brings the largest extent
+// into [1, 2), exactly. Returns its exponent. TetGen ends the process if the extent along an axis is 0.
 int scale_to_unit(Plc &plc) {
   double low[3], high[3];
   for (std::size_t i = 0; i < plc.points.size(); i++) {
@@ -279,7 +279,8 @@ TetcastStatus tetcast_tetgen_mesh(TetcastContext *context, const TetcastSurface 
   });
 }
 
-TetcastStatus tetcast_tetgen_mesh_file(TetcastContext *context, const char *path, const TetcastTetgenDesc *desc, TetcastMesh **mesh) {
+TetcastStatus tetcast_tetgen_mesh_file(TetcastContext *context, const char *path, const TetcastTetgenDesc *desc,
+                                       TetcastMesh **mesh) {
   return fenced(context, desc, mesh, [&](const TetcastTetgenDesc &settings) {
     if (!context || !path) {
       fail(TETCAST_ERROR_ARGUMENT, "%s is NULL", context ? "path" : "context");

@@ -121,8 +121,10 @@ void Capture::add(const char *text, bool is_error) noexcept {
   try {
     // Says only that a note in the file belongs to a part of VTK that isn't loaded: nothing that concerns the mesh.
     if (!is_error && std::strstr(text, "Could not locate key")) return;
+    // Follows the error itself, or an error code, and is a page of addresses.
+    const bool says_nothing = std::strstr(text, "returned failure for request") != nullptr;
     std::string &first = is_error ? error_ : warning_;
-    if (first.empty()) first = tidy(text);
+    if (first.empty() && !says_nothing) first = tidy(text);
   } catch (...) { // out of memory: that something was said still counts
   }
   if (is_error) failed_ = true;

@@ -4,6 +4,7 @@
 #include "surface.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <cstring>
 
 namespace tcv {
@@ -37,7 +38,10 @@ double Scanner::number(const char *what) {
   double value = 0;
   const auto [end, error] = std::from_chars(first, last, value);
   // Beyond double's range: tiny is zero, huge is an infinity that is refused later.
-  if (error == std::errc::result_out_of_range) return std::strtod(first, nullptr);
+  if (error == std::errc::result_out_of_range) {
+    const bool tiny = text.find("e-") != std::string::npos || text.find("E-") != std::string::npos;
+    return tiny ? 0 : HUGE_VAL;
+  }
   if (error != std::errc() || end != last || first == last) {
     fail(TETCAST_ERROR_DATA, "%s: line %d: %s expected, not '%.40s'", path_, line_, what, text.c_str());
   }

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <string>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -167,17 +168,6 @@ public:
 
   const char *path() const { return path_.c_str(); }
 
-  // VTK doesn't look whether its last bytes reached the disk.
-  bool complete() const {
-    char tail[64];
-    FILE *file = std::fopen(path_.c_str(), "rb");
-    if (!file) return false;
-    const bool sought = std::fseek(file, -static_cast<long>(sizeof tail), SEEK_END) == 0;
-    const size_t size = sought ? std::fread(tail, 1, sizeof tail, file) : 0;
-    std::fclose(file);
-    return std::string(tail, size).find("</VTKFile>") != std::string::npos;
-  }
-
   void become_target() {
     if (std::rename(path_.c_str(), target_.c_str()) != 0) {
       fail(TETCAST_ERROR_IO, "%s: can't be written: %s", target_.c_str(), std::strerror(errno));
@@ -198,14 +188,13 @@ static void write_grid(const char *path, vtkUnstructuredGrid *grid, const Captur
   writer->EncodeAppendedDataOff();
   writer->SetCompressorTypeToZLib();
   writer->SetHeaderTypeToUInt64();
-  errno = 0;
-  const bool written = writer->Write() == 1 && !capture.failed() && temporary.complete();
+  const bool written = writer->Write() == 1 && !capture.failed();
   if (!written) {
     const unsigned long code = writer->GetErrorCode();
-    const char *reason = !capture.error().empty() ? capture.error().c_str()
-                         : code != 0              ? vtkErrorCode::GetStringFromErrorCode(code)
-                                                  : "the file is incomplete; disk full?";
-    if (code == vtkErrorCode::OutOfDiskSpaceError) reason = "no space left on the disk";
+    const char *reason = "VTK does not say why";
+    if (code == vtkErrorCode::OutOfDiskSpaceError) reason = std::strerror(ENOSPC);
+    else if (code != vtkErrorCode::NoError) reason = vtkErrorCode::GetStringFromErrorCode(code);
+    else if (!capture.error().empty()) reason = capture.error().c_str();
     fail(TETCAST_ERROR_IO, "%s: can't be written: %s", path, reason);
   }
   temporary.become_target();

@@ -1,0 +1,20 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+# Makes the datasets of this folder again, and with "pictures" as second argument their pictures.
+# usage: make.sh PATH/TO/tetcast [pictures]
+set -eu
+tetcast=$(realpath "$1")
+cd "$(dirname "$0")"
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+${CC:-cc} -std=c17 -O2 -o "$work/surfaces" surfaces.c -lm
+"$work/surfaces" "$work"
+"$tetcast" mesh "$work/ball.smesh" --max-volume 5.5 --field orbital:4,2,1 --single -o hydrogen.vtu
+"$tetcast" mesh "$work/box.smesh" --max-volume 3e-4 --field heat --single -o heat.vtu
+"$tetcast" mesh "$work/trefoil.smesh" --max-volume 1.2e-3 --field gyroid:1.8 --single -o trefoil.vtu
+"$tetcast" mesh "$work/shell.smesh" --max-volume 1.3e-4 --field shell:6,4,1.4 --single -o shell.vtu
+if [ "${2:-}" = pictures ]; then
+  for name in hydrogen heat trefoil shell; do
+    "$tetcast" render --scene "$name.json" -o "$name.png"
+  done
+fi
