@@ -73,13 +73,15 @@ TetcastStatus tc_view_create(TetcastContext *context, const TetcastCamera *camer
   return TETCAST_OK;
 }
 
-void tc_view_ray(const TcView *view, double u, double v, double eye[3], double direction[3]) {
+void tc_view_line(const TcView *view, double u, double v, TcLine *line) {
+  double shift[3];
+  memcpy(line->eye, view->eye, sizeof line->eye);
   for (int k = 0; k < 3; ++k) {
-    const double offset = u * view->right[k] + v * view->up[k];
-    eye[k] = view->orthographic ? view->eye[k] + offset : view->eye[k];
-    direction[k] = view->orthographic ? view->forward[k] : view->forward[k] + offset;
+    shift[k] = u * view->right[k] + v * view->up[k];
+    line->offset[k] = view->orthographic ? shift[k] : 0;
+    line->direction[k] = view->orthographic ? view->forward[k] : view->forward[k] + shift[k];
   }
   if (view->orthographic) return;
-  const double length = sqrt(dot(direction, direction));
-  for (int k = 0; k < 3; ++k) direction[k] /= length;
+  const double length = sqrt(dot(line->direction, line->direction));
+  for (int k = 0; k < 3; ++k) line->direction[k] /= length;
 }

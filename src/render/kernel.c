@@ -65,11 +65,10 @@ static void cast_faces(const TetcastVolume *volume, const TcPieces *pieces, cons
   }
 }
 
-bool tc_cast(const TetcastVolume *volume, const TcPieces *pieces, const double eye[3], const double direction[3], TcWorker *worker,
-             TcLight *light) {
+bool tc_cast(const TetcastVolume *volume, const TcPieces *pieces, const TcLine *line, TcWorker *worker, TcLight *light) {
   TcRay ray;
   *light = tc_light_begin();
-  if (!tc_ray_begin(volume, eye, direction, &ray)) return true;
+  if (!tc_ray_begin(volume, line, &ray)) return true;
   if (!tc_trace(volume, &ray, &worker->spans)) return false;
   if (volume->traversal == TETCAST_TRAVERSAL_SHELL) cast_shell(volume, pieces, &ray, worker, light);
   else cast_faces(volume, pieces, &ray, worker, light);
@@ -85,10 +84,11 @@ bool tc_kernel_scalar(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int6
       for (int i = 0; i < samples; ++i) {
         const double column = (double)(x * job->samples_x + i % job->samples_x) + 0.5;
         const double row = (double)(y * job->samples_y + i / job->samples_x) + 0.5;
-        double eye[3], direction[3], rgba[4];
+        double rgba[4];
+        TcLine line;
         TcLight light;
-        tc_view_ray(&job->view, 2 * column / columns - 1, 1 - 2 * row / rows, eye, direction);
-        if (!tc_cast(job->volume, job->pieces, eye, direction, worker, &light)) return false;
+        tc_view_line(&job->view, 2 * column / columns - 1, 1 - 2 * row / rows, &line);
+        if (!tc_cast(job->volume, job->pieces, &line, worker, &light)) return false;
         tc_light_end(&light, rgba);
         for (int k = 0; k < 4; ++k) sum[k] += rgba[k];
       }

@@ -14,14 +14,13 @@ static bool measure(const TetcastVolume *volume, const TcPieces *pieces, TcWorke
   for (int axis = 0; axis < 3; ++axis) {
     for (int i = 0; i < GRID * GRID; ++i) {
       const double u = (2 * (i % GRID) + 1.0) / GRID - 1, v = (2 * (i / GRID) + 1.0) / GRID - 1;
-      double eye[3], direction[3] = {0, 0, 0};
-      direction[axis] = 1;
-      memcpy(eye, volume->center, sizeof eye);
-      eye[(axis + 1) % 3] += u * volume->radius;
-      eye[(axis + 2) % 3] += v * volume->radius;
-      eye[axis] -= 2 * volume->radius;
+      TcLine line = {.direction = {axis == 0, axis == 1, axis == 2}};
+      memcpy(line.eye, volume->center, sizeof line.eye);
+      line.offset[(axis + 1) % 3] = u * volume->radius;
+      line.offset[(axis + 2) % 3] = v * volume->radius;
+      line.offset[axis] = -2 * volume->radius;
       TcLight light;
-      if (!tc_cast(volume, pieces, eye, direction, worker, &light)) return false;
+      if (!tc_cast(volume, pieces, &line, worker, &light)) return false;
       double rgba[4];
       tc_light_end(&light, rgba);
       if (light.depth > 0) depths[(*count)++] = light.depth;

@@ -32,8 +32,8 @@ typedef struct TcView {
 
 TetcastStatus tc_view_create(TetcastContext *context, const TetcastCamera *camera, const TetcastVolume *volume, double aspect,
                              TcView *view);
-/* Start and unit direction of the ray at (u, v). */
-void tc_view_ray(const TcView *view, double u, double v, double eye[3], double direction[3]);
+/* The ray at (u, v). */
+void tc_view_line(const TcView *view, double u, double v, TcLine *line);
 TetcastCamera tc_camera_default(const double bounds[6], double aspect);
 
 TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *desc, TetcastFrame **frame);
@@ -62,8 +62,7 @@ typedef bool TcKernel(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int6
 TcKernel tc_kernel_scalar;
 
 /* The light of one ray: the slow and simple way, in which a kernel may fall back on and against which it is tested. */
-bool tc_cast(const TetcastVolume *volume, const TcPieces *pieces, const double eye[3], const double direction[3], TcWorker *worker,
-             TcLight *light);
+bool tc_cast(const TetcastVolume *volume, const TcPieces *pieces, const TcLine *line, TcWorker *worker, TcLight *light);
 
 TetcastStatus tc_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **scene);
 void tc_scene_destroy(TetcastScene *scene);

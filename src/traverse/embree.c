@@ -133,12 +133,12 @@ size_t tc_embree_bytes(const TcEmbree *embree) {
   return bytes > 0 ? (size_t)bytes : 0;
 }
 
-void tc_embree_query(const TcEmbree *embree, const double origin[3], const double direction[3], TcCandidateFunction *candidate,
+void tc_embree_query(const TcEmbree *embree, const double from_center[3], const double direction[3], TcCandidateFunction *candidate,
                      void *user) {
   /* Start beyond the sphere: where the line is nearest to the centre, then two radii back. */
   double p[3], along = 0;
   for (int k = 0; k < 3; ++k) {
-    p[k] = (origin[k] - embree->center[k]) * embree->inverse_radius;
+    p[k] = from_center[k] * embree->inverse_radius;
     along += p[k] * direction[k];
   }
   struct RTCRayHit ray;

@@ -19,8 +19,8 @@ TetcastStatus tc_embree_create(TetcastContext *context, int64_t count, const dou
 void tc_embree_destroy(TcEmbree *embree);
 size_t tc_embree_bytes(const TcEmbree *embree);
 
-/* All candidates along the whole line through `origin`, which must be within 2 radii of the centre, with unit `direction`. */
-void tc_embree_query(const TcEmbree *embree, const double origin[3], const double direction[3], TcCandidateFunction *candidate,
+/* All candidates along the whole line through the centre + `from_center`, with unit `direction`. */
+void tc_embree_query(const TcEmbree *embree, const double from_center[3], const double direction[3], TcCandidateFunction *candidate,
                      void *query);
 
 #endif

@@ -3,14 +3,29 @@
 
 #include <float.h>
 
-bool tc_ray_begin(const TetcastVolume *volume, const double eye[3], const double direction[3], TcRay *ray) {
-  double along = 0, distance2 = 0;
-  for (int k = 0; k < 3; ++k) along += (volume->center[k] - eye[k]) * direction[k];
+/* a + b = *sum + return value, exactly (Knuth). */
+static double two_sum(double a, double b, double *sum) {
+  const double s = a + b, t = s - a;
+  *sum = s;
+  return (a - (s - t)) + (b - t);
+}
+
+bool tc_ray_begin(const TetcastVolume *volume, const TcLine *line, TcRay *ray) {
+  const double *direction = line->direction;
+  double along = 0, distance2 = 0, rest[3];
+  for (int k = 0; k < 3; ++k) along += (volume->center[k] - line->eye[k] - line->offset[k]) * direction[k];
+  /* eye + offset + along · direction, as origin + rest to twice the precision: whatever `along` was rounded to, the point is on the
+   * ray, and vertex − origin is as good as the vertex is. */
   for (int k = 0; k < 3; ++k) {
-    ray->origin[k] = tc_without_tiny(eye[k] + along * direction[k]);
+    const double product = along * direction[k];
+    double shift;
+    rest[k] = fma(along, direction[k], -product);
+    rest[k] += two_sum(product, line->offset[k], &shift);
+    rest[k] += two_sum(line->eye[k], shift, &ray->origin[k]);
+    ray->origin[k] = tc_without_tiny(ray->origin[k]);
     ray->direction[k] = direction[k];
-    const double d = ray->origin[k] - volume->center[k];
-    distance2 += d * d;
+    ray->from_center[k] = ray->origin[k] - volume->center[k] + rest[k];
+    distance2 += ray->from_center[k] * ray->from_center[k];
   }
   /* The sphere has a margin that covers the rounding here (volume.c). Written so that NaN passes the volume. */
   if (!(distance2 <= volume->radius * volume->radius) || !(-along <= volume->radius)) return false;
@@ -24,6 +39,9 @@ bool tc_ray_begin(const TetcastVolume *volume, const double eye[3], const double
   ray->shear_x = tc_without_tiny(direction[ray->kx] / direction[ray->kz]);
   ray->shear_y = tc_without_tiny(direction[ray->ky] / direction[ray->kz]);
   ray->inverse_z = 1 / direction[ray->kz];
+  ray->rest_x = tc_without_tiny(rest[ray->kx] - ray->shear_x * rest[ray->kz]);
+  ray->rest_y = tc_without_tiny(rest[ray->ky] - ray->shear_y * rest[ray->kz]);
+  ray->rest_z = rest[ray->kz] * ray->inverse_z;
   return true;
 }
 

@@ -11,11 +11,20 @@
 
 #include "traverse/volume.h"
 
+/* A ray as it is asked for: from eye + offset along the unit vector `direction`, scaled. The two are kept apart because their sum, far
+ * from the coordinates' origin, would be rounded to the spacing of numbers there. */
+typedef struct TcLine {
+  double eye[3], offset[3], direction[3];
+} TcLine;
+
 typedef struct TcRay {
-  double origin[3], direction[3]; /* scaled; the origin is near the volume, the direction a unit vector */
-  double near;                    /* depth from which on the ray sees: z ≥ near */
-  int kx, ky, kz;                 /* kz: the direction's largest component */
+  double origin[3];        /* scaled, near the volume; what rounding took from it is in rest_x, rest_y, rest_z */
+  double from_center[3];   /* the same from the volume's centre */
+  double direction[3];
+  double near;             /* depth from which on the ray sees: z ≥ near */
+  int kx, ky, kz;          /* kz: the direction's largest component */
   double shear_x, shear_y, inverse_z;
+  double rest_x, rest_y, rest_z; /* sheared */
 } TcRay;
 
 typedef struct TcPoint {
@@ -29,18 +38,17 @@ typedef struct TcPoint {
 
 static inline double tc_without_tiny(double x) { return fabs(x) < TC_TINY ? 0 : x; }
 
-/* The ray from `eye` (scaled) along the unit vector `direction`: its origin is moved to where it is nearest to the volume's
- * centre. False when it passes the volume's sphere. */
-bool tc_ray_begin(const TetcastVolume *volume, const double eye[3], const double direction[3], TcRay *ray);
+/* The ray with its origin moved to where it is nearest to the volume's centre. False when it passes the volume's sphere. */
+bool tc_ray_begin(const TetcastVolume *volume, const TcLine *line, TcRay *ray);
 
 static inline TcPoint tc_project(const TetcastVolume *volume, const TcRay *ray, uint32_t id) {
   double record[4], p[3];
   tc_volume_vertex(volume, id, record);
   for (int k = 0; k < 3; ++k) p[k] = record[k] - ray->origin[k];
   TcPoint point;
-  point.x = p[ray->kx] - ray->shear_x * p[ray->kz];
-  point.y = p[ray->ky] - ray->shear_y * p[ray->kz];
-  point.z = p[ray->kz] * ray->inverse_z;
+  point.x = p[ray->kx] - ray->shear_x * p[ray->kz] - ray->rest_x;
+  point.y = p[ray->ky] - ray->shear_y * p[ray->kz] - ray->rest_y;
+  point.z = p[ray->kz] * ray->inverse_z - ray->rest_z;
   point.s = record[3];
   point.id = id;
   return point;

@@ -72,7 +72,7 @@ bool tc_trace(const TetcastVolume *volume, const TcRay *ray, TcSpans *spans) {
   Query query = {volume, ray, spans};
   spans->count = 0;
   const bool shell = volume->traversal == TETCAST_TRAVERSAL_SHELL;
-  tc_embree_query(volume->embree, ray->origin, ray->direction, shell ? shell_candidate : cell_candidate, &query);
+  tc_embree_query(volume->embree, ray->from_center, ray->direction, shell ? shell_candidate : cell_candidate, &query);
   if (spans->count > 1) qsort(spans->data, (size_t)spans->count, sizeof *spans->data, compare_spans);
   return !spans->out_of_memory;
 }

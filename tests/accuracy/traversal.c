@@ -134,11 +134,11 @@ static void caster_end(Caster *caster) {
 /* Length inside, in the mesh's unit, and number of segments. */
 static double length_of(Caster *caster, int traversal, const double eye[3], const double direction[3], int64_t *segments) {
   const TetcastVolume *volume = caster->volume[traversal];
-  double scaled[3];
-  for (int k = 0; k < 3; ++k) scaled[k] = ldexp(eye[k], -volume->exponent);
+  TcLine line = {.direction = {direction[0], direction[1], direction[2]}};
+  for (int k = 0; k < 3; ++k) line.eye[k] = ldexp(eye[k], -volume->exponent);
   TcLight light;
   caster->worker.segments = caster->worker.lost = 0;
-  assert_true(tc_cast(volume, &caster->gray->pieces, scaled, direction, &caster->worker, &light));
+  assert_true(tc_cast(volume, &caster->gray->pieces, &line, &caster->worker, &light));
   assert_int_equal(caster->worker.lost, 0);
   *segments = caster->worker.segments;
   double rgba[4];
