@@ -97,6 +97,9 @@ for name in full.png full.exr full.tif full.jpg; do
   done
 done
 (ulimit -f 0 && "$tetcast" render cube.vtu -o full.png --size 9x9) 2>/dev/null && fail 'exit code 0 on a full disk'
+(ulimit -f 1 && "$tetcast" render cube.vtu -o full.png --size 4x4 --save-scene scene.json) 2>&1 | cat >err
+grep -q "^tetcast: error: .*scene.json.*too large" err || fail "scene.json: $(cat err)"
+[ ! -e scene.json ] || fail 'scene.json is there'
 find . -name '.*tetcast*' | grep . && fail 'temporary files are left'
 if mkdir small && mount -t tmpfs -o size=16k tmpfs small 2>/dev/null; then
   refuse 1 'No space left' render cube.vtu -o small/a.tif --size 400x300

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # agreement.sh TETCAST REFERENCE MESH [ARRAY [CASE…]]: renders MESH with the walk (one thread and two), with all faces,
 # and by brute force; the first two must be the same to the last bit and the others within 1e-12.
-# A case is VIEW-TRANSFER. TETCAST_TEST_LONG=1: every view with every transfer function, every pixel.
+# A case is VIEW-TRANSFER. TETCAST_TEST_LONG=1: every view with every transfer function, every pixel. Among so many
+# there are rays that graze an opaque step so flatly that the last bits of a coordinate matter: they may differ by that.
 set -u -o pipefail
 tetcast=$1 reference=$2 mesh=$3 array=${4-}
 shift $(($# < 4 ? $# : 4))
@@ -109,17 +110,20 @@ check() { # CASE
   run "${render[@]}" --traversal faces --threads 2 -o faces.tif || return
   cmp one.tif two.tif || { echo "FAILED: $1: one thread and two" && failures=$((failures + 1)); }
   local brute_force=("$reference" scene.json one.tif faces.tif --every "$every")
+  [ -z "${TETCAST_TEST_LONG-}" ] || brute_force+=(--condition)
   [ "${1#*-}" = preset ] || brute_force+=(--transfer "${1#*-}.json")
   if ! run "${brute_force[@]}"; then
     echo "^ image by ${render[*]}, other with --traversal faces"
     [ "${1#*-}" = preset ] || cat "${1#*-}.json"
   fi
   echo "$1: $(tail -n 1 log)"
-  if grep -q 'average alpha 0.000' log; then
-    echo "FAILED: $1 shows nothing"
-    failures=$((failures + 1))
-  fi
+  if grep -q 'average alpha 0.000' log; then empty=$((empty + 1)); fi
 }
 
+empty=0
 for case in "${cases[@]}"; do check "$case"; done
+if [ $((3 * empty)) -gt ${#cases[@]} ]; then
+  echo "FAILED: $empty of ${#cases[@]} pictures show nothing"
+  failures=$((failures + 1))
+fi
 [ $failures = 0 ]

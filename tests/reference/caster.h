@@ -162,16 +162,41 @@ public:
     return integral.rgba();
   }
 
-  std::array<Real, 4> pixel_rgba(int64_t i, int64_t j, bool *folded = nullptr) const {
+  /* `shift` moves the rays. */
+  std::array<Real, 4> pixel_rgba(int64_t i, int64_t j, bool *folded = nullptr, Vector<Real> shift = {}) const {
     std::array<Real, 4> sum{};
     const int64_t n = scene_.samples;
     for (int64_t k = 0; k < n * n; k++) {
       const Real x = i + (k % n + Real(0.5)) / n, y = j + (k / n + Real(0.5)) / n;
-      const auto rgba = ray_rgba(camera_ray<Real>(scene_, x, y), folded);
+      Ray<Real> ray = camera_ray<Real>(scene_, x, y);
+      ray.aside = ray.aside + shift;
+      const auto rgba = ray_rgba(ray, folded);
       for (size_t c = 0; c < 4; c++)
         sum[c] += rgba[c] / (n * n);
     }
     return sum;
+  }
+
+  /* By how much a pixel changes if its rays are moved by a few roundings of the largest coordinate. */
+  Real pixel_change(int64_t i, int64_t j) const {
+    double size = 0;
+    for (size_t k = 0; k < 3; k++)
+      size = std::max(size, std::abs(scene_.camera.eye[k]));
+    for (const auto &p : scene_.mesh.points)
+      for (double x : p)
+        size = std::max(size, std::abs(x));
+    const Real step = Real(0x1p-50) * size;
+    const auto here = pixel_rgba(i, j);
+    Real change = 0;
+    const Real zero = 0;
+    for (const Vector<Real> &shift : {Vector<Real>{step, zero, zero}, Vector<Real>{-step, zero, zero},
+                                      Vector<Real>{zero, step, zero}, Vector<Real>{zero, -step, zero},
+                                      Vector<Real>{zero, zero, step}, Vector<Real>{zero, zero, -step}}) {
+      const auto there = pixel_rgba(i, j, nullptr, shift);
+      for (size_t c = 0; c < 4; c++)
+        change = std::max(change, absolute(there[c] - here[c]));
+    }
+    return change;
   }
 
 private:

@@ -109,6 +109,8 @@ off crossed.off "${points/0 0 0/0.5 0.6 3}" "$triangles"
 refuse 1 'crossed.off: the surface intersects itself' mesh crossed.off -o x.vtu
 off flat.off "${points//2|/0|}" "$triangles"
 refuse 1 'flat.off' mesh flat.off -o x.vtu
+off thin.off '0 0 0|1 0 0|0 1 0|.3 .3 1e-7' '0 2 1|0 1 3|1 2 3|2 0 3' # TetGen 1.5 ends its process on it
+refuse 1 'thin.off: TetGen gave up on it (Aborted)' mesh thin.off -o x.vtu
 off range.off "$points" "${triangles/7/8}"
 refuse 1 'range.off' mesh range.off -o x.vtu
 for file in cube.off cube.ply cube.obj cube.stl binary.stl box.smesh two.ele; do
@@ -161,23 +163,7 @@ for signal in INT:130 TERM:143 HUP:129; do
   [ "$before" = "$(files)" ] || fail "files are left: $(files)"
 done
 
-# TetGen's process dies: killed here, as an assertion of TetGen's would.
-checks=$((checks + 1))
-"$tetcast" mesh cube.off -o long.vtu --max-volume 1e-7 >"$work.out" 2>"$work.err" &
-parent=$!
-sleep 0.7
-child=$(cat /proc/$parent/task/$parent/children 2>/dev/null)
-if [ -n "$child" ]; then
-  kill -ABRT $child
-  wait $parent
-  [ $? = 1 ] || fail 'exit code of a command whose TetGen aborted'
-  grep -q '^tetcast: error: cube.off: TetGen gave up on it (Aborted)' "$work.err" || fail "$(cat "$work.err")"
-  [ "$before" = "$(files)" ] || fail "files are left: $(files)"
-else
-  kill $parent
-  wait $parent
-fi
-rm -f "$work.err" "$work.out"
+rm -f "$work.err"
 
 # Surfaces of other people's software.
 data=$TETCAST_DATA/surfaces

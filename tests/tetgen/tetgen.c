@@ -302,12 +302,9 @@ static void test_bad_values(void **state) {
   for (int i = 0; i < 8; i++)
     flat.vertices[i][2] = 0;
   refuse(&flat, TETCAST_ERROR_DATA, "flat");
-  Body twice = {0};
-  add_box(&twice, 0, 1);
-  add_box(&twice, 0, 1);
-  TetcastMesh *mesh = NULL; /* whatever TetGen makes of it */
-  tetcast_tetgen_mesh(context, surface(&twice), NULL, &mesh);
-  tetcast_mesh_destroy(&mesh);
+  for (int i = 0; i < 8; i++)
+    flat.vertices[i][2] = flat.vertices[i][0] + flat.vertices[i][1];
+  refuse(&flat, TETCAST_ERROR_DATA, "plane");
 }
 
 static void test_bad_arguments(void **state) {
@@ -344,7 +341,7 @@ static void test_nothing_is_printed(void **state) {
   add_box(&body, 0, 1);
   TetcastMesh *mesh = fill(&body, 1.4, 0.01);
   tetcast_mesh_destroy(&mesh);
-  add_box(&body, 0.5, 1.5);
+  add_box(&body, 0, 1); /* of facets that are there twice TetGen tells even when it is to be quiet */
   refuse(&body, TETCAST_ERROR_DATA, "intersects");
   printf("after");
   fflush(stdout);
@@ -503,10 +500,10 @@ static void test_truncated_and_damaged(void **state) {
   }
   static const char nodes[] = "5 3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n";
   for (size_t i = 0; i < sizeof nodes - 1; i++)
-    for (int c = 0; c < 256; c++) {
+    for (const char *c = "\n 09-+.e#x\377"; *c; c++) {
       char changed[sizeof nodes];
       memcpy(changed, nodes, sizeof nodes);
-      changed[i] = (char)c;
+      changed[i] = *c;
       write_text("d.node", changed, sizeof nodes - 1);
       TetcastMesh *mesh = NULL;
       const TetcastStatus status = read_text("d.ele", "2 4 0\n1 1 2 3 4\n2 2 3 4 5\n", &mesh);

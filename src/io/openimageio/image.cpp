@@ -63,18 +63,31 @@ std::string extension_of(const std::string &path) {
   return extension;
 }
 
-std::unique_ptr<ImageOutput> format_output(TetcastContext *context, const char *path) {
+// The formats that were tried: all write through a proxy and report what goes wrong. Beyond the limit some print, write a damaged
+// file or, as libjpeg does, end the process.
+struct Format {
+  const char *name; // OpenImageIO's
+  TypeDesc::BASETYPE standard;
+  int64_t limit; // pixels a side
+};
+
+constexpr Format formats[] = {{"png", TypeDesc::UINT8, 1000000},   {"openexr", TypeDesc::HALF, 1 << 20},
+                              {"tiff", TypeDesc::FLOAT, 1 << 20},  {"jpeg", TypeDesc::UINT8, 65500},
+                              {"bmp", TypeDesc::UINT8, 1 << 20},   {"targa", TypeDesc::UINT8, 65535},
+                              {"webp", TypeDesc::UINT8, 16383},    {"pnm", TypeDesc::UINT8, 1 << 20},
+                              {"hdr", TypeDesc::FLOAT, 1 << 20}};
+
+const Format &find_format(TetcastContext *context, const char *path, std::unique_ptr<ImageOutput> &output) {
   const std::string extension = extension_of(path);
   if (extension.empty())
     fail(context, TETCAST_ERROR_ARGUMENT, path, "the name has no extension to tell the format by, such as .png");
-  std::unique_ptr<ImageOutput> output = ImageOutput::create(extension);
+  output = ImageOutput::create(extension);
   (void)OIIO::geterror(); // or it would be printed at the end of the process
-  // Formats that open files by themselves hide errors of writing; "null" and "term" write no file.
-  if (!output || !output->supports("ioproxy") || !std::strcmp(output->format_name(), "null") ||
-      !std::strcmp(output->format_name(), "term"))
-    fail(context, TETCAST_ERROR_ARGUMENT, path,
-         "images of format '." + extension + "' are not supported; .png .exr .tif .jpg are");
-  return output;
+  for (const Format &format : formats)
+    if (output && !std::strcmp(output->format_name(), format.name))
+      return format;
+  fail(context, TETCAST_ERROR_ARGUMENT, path,
+       "images of format '." + extension + "' are not supported; .png .exr .tif .jpg are");
 }
 
 const char *type_name(TetcastPixelType type) {
@@ -94,7 +107,7 @@ const char *type_name(TetcastPixelType type) {
   }
 }
 
-TypeDesc requested_type(TetcastPixelType type, const std::string &format) {
+TypeDesc requested_type(TetcastPixelType type, const Format &format) {
   switch (type) {
   case TETCAST_PIXEL_UINT8:
     return TypeDesc::UINT8;
@@ -107,7 +120,7 @@ TypeDesc requested_type(TetcastPixelType type, const std::string &format) {
   case TETCAST_PIXEL_DOUBLE:
     return TypeDesc::DOUBLE;
   default:
-    return format == "openexr" ? TypeDesc::HALF : format == "tiff" ? TypeDesc::FLOAT : TypeDesc::UINT8;
+    return format.standard;
   }
 }
 
@@ -202,12 +215,16 @@ void write_picture(TetcastContext *context, const char *path, const Pixels &pixe
                    bool publish) {
   tetcast::NewFile file; // outlives the proxy, which outlives the output
   std::unique_ptr<tetcast::CheckedProxy> proxy;
-  std::unique_ptr<ImageOutput> output = format_output(context, path);
+  std::unique_ptr<ImageOutput> output;
+  const Format &format = find_format(context, path, output);
+  if (std::max(pixels.width, pixels.height) > format.limit)
+    fail(context, TETCAST_ERROR_ARGUMENT, path,
+         "the format holds at most " + std::to_string(format.limit) + " pixels a side");
   output->threads(tetcast_context_threads(context));
   if (const int error = file.open(path))
     fail(context, TETCAST_ERROR_IO, path, error_text(error));
   proxy = std::make_unique<tetcast::CheckedProxy>(file.file(), file.temporary());
-  const TypeDesc type = requested_type(desc.pixel_type, output->format_name());
+  const TypeDesc type = requested_type(desc.pixel_type, format);
   const bool opaque = desc.background[3] >= 1;
   ImageSpec spec = picture_spec(*output, pixels, type, opaque);
   void *pointer = static_cast<OIIO::Filesystem::IOProxy *>(proxy.get());

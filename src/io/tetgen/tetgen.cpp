@@ -173,7 +173,7 @@ void tetrahedralize_quietly(tetgenbehavior &behavior, tetgenio &in, tetgenio &ou
   case 5:
     fail(TETCAST_ERROR_DATA, "two facets of the surface lie too close to each other (TetGen's code 5)");
   case 10:
-    fail(TETCAST_ERROR_DATA, "TetGen can't use the surface (its code 10)");
+    fail(TETCAST_ERROR_DATA, "TetGen can't use the surface (its code 10): do all its points lie in a plane?");
   default:
     fail(TETCAST_ERROR_DATA, "TetGen gave up with an internal error (its code %d)", code);
   }
