@@ -63,19 +63,18 @@ std::string extension_of(const std::string &path) {
   return extension;
 }
 
-// The formats that were tried: all write through a proxy and report what goes wrong. Beyond the limit some print, write a damaged
-// file or, as libjpeg does, end the process.
+// The formats that were tried: all write through a proxy and report what goes wrong. Beyond the limit some print, write
+// a damaged file or, as libjpeg does, end the process.
 struct Format {
   const char *name; // OpenImageIO's
   TypeDesc::BASETYPE standard;
   int64_t limit; // pixels a side
 };
 
-constexpr Format formats[] = {{"png", TypeDesc::UINT8, 1000000},   {"openexr", TypeDesc::HALF, 1 << 20},
-                              {"tiff", TypeDesc::FLOAT, 1 << 20},  {"jpeg", TypeDesc::UINT8, 65500},
-                              {"bmp", TypeDesc::UINT8, 1 << 20},   {"targa", TypeDesc::UINT8, 65535},
-                              {"webp", TypeDesc::UINT8, 16383},    {"pnm", TypeDesc::UINT8, 1 << 20},
-                              {"hdr", TypeDesc::FLOAT, 1 << 20}};
+constexpr Format formats[] = {
+    {"png", TypeDesc::UINT8, 1000000}, {"openexr", TypeDesc::HALF, 1 << 20}, {"tiff", TypeDesc::FLOAT, 1 << 20},
+    {"jpeg", TypeDesc::UINT8, 65500},  {"bmp", TypeDesc::UINT8, 1 << 20},    {"targa", TypeDesc::UINT8, 65535},
+    {"webp", TypeDesc::UINT8, 16383},  {"pnm", TypeDesc::UINT8, 1 << 20},    {"hdr", TypeDesc::FLOAT, 1 << 20}};
 
 const Format &find_format(TetcastContext *context, const char *path, std::unique_ptr<ImageOutput> &output) {
   const std::string extension = extension_of(path);
@@ -232,17 +231,14 @@ void write_picture(TetcastContext *context, const char *path, const Pixels &pixe
 
   bool done = output->open(file.temporary(), spec);
   if (done) {
-    // A format that can't hold the type opens with another one. Without a wish, that is the format's own.
-    const TypeDesc actual = output->spec().format;
-    const bool usable = is_float(actual) || actual == TypeDesc::UINT8 || actual == TypeDesc::UINT16;
-    if (!usable || (desc.pixel_type != TETCAST_PIXEL_DEFAULT && actual != type)) {
+    if (output->spec().format != type) {            // what a format does that can't hold the type
       write_rows(*output, pixels, desc.background); // libpng would print about a file without pixels
       output->close();
       (void)output->geterror();
       fail(context, TETCAST_ERROR_ARGUMENT, path,
            std::string("the format cannot hold pixels of type ") + type_name(desc.pixel_type));
     }
-    if (publish && !output->supports("alpha") && (is_float(actual) || !opaque))
+    if (publish && !output->supports("alpha") && (is_float(type) || !opaque))
       tetcast_context_message(context, TETCAST_SEVERITY_WARNING,
                               "image '%s': the format has no alpha; the picture lies over black", path);
     done = write_rows(*output, pixels, desc.background);
