@@ -31,8 +31,9 @@ typedef struct TetcastImageDesc {
 
 TETCAST_API TetcastImageDesc tetcast_image_desc_default(void);
 
-/* Writes the frame; the format is told by the path's extension (.png .exr .tif .tiff .jpg .jpeg and others that OpenImageIO
- * has). A pixel type the format can't hold, an unknown extension: TETCAST_ERROR_ARGUMENT. The file appears whole or not at all. */
+/* Writes the frame; the format is told by the path's extension: .png .exr .tif .tiff .jpg .jpeg, also .bmp .tga .webp .ppm .hdr. A pixel
+ * type the format can't hold, an unknown extension: TETCAST_ERROR_ARGUMENT. Over a translucent background, integer formats with alpha
+ * hold unassociated colour. The file appears whole or not at all. */
 TETCAST_API TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, const TetcastFrame *frame,
                                               const TetcastImageDesc *desc);
 

@@ -17,14 +17,17 @@ extern "C" {
 
 typedef struct TetcastTetgenDesc {
   uint32_t cookie;
-  double quality;    /* largest ratio of circumradius to shortest edge, > 1; default 1.4; 0: as the surface's triangles come */
+  double quality;    /* ratio of circumradius to shortest edge to stay below, > 1; default 1.4; 0: as the surface's triangles come.
+                      * TetGen aims at it: below 2, a few cells at the surface may exceed it */
   double max_volume; /* largest volume of a cell in the surface's unit of length cubed; 0: no limit */
 } TetcastTetgenDesc;
 
 TETCAST_API TetcastTetgenDesc tetcast_tetgen_desc_default(void);
 
 /* Fills a closed surface with tetrahedra. TETCAST_ERROR_DATA with a message that says which: open surface, self-intersection,
- * non-finite or coincident input, nothing inside. Not to be called from two threads at a time: TetGen has global state. */
+ * non-finite or coincident input, nothing inside. Not to be called from two threads at a time: TetGen has global state, and while it
+ * runs standard output goes to /dev/null, because it prints even when told not to. Some assertions inside TetGen end the process;
+ * a program that must survive any surface makes the mesh in a process of its own, as the command does. */
 TETCAST_API TetcastStatus tetcast_tetgen_mesh(TetcastContext *context, const TetcastSurface *surface, const TetcastTetgenDesc *desc,
                                               TetcastMesh **mesh);
 

@@ -10,10 +10,14 @@ complain() {
   status=1
 }
 
-# The files of the repository, new ones included; without git all that lies here, builds apart.
+# The files of the repository, in its folders also those not yet committed; without git all that lies here, builds apart.
 list() {
-  git -c safe.directory="$PWD" ls-files --cached --others --exclude-standard 2>/dev/null ||
+  if git rev-parse --git-dir >/dev/null 2>&1; then
+    git ls-files
+    git ls-files --others --exclude-standard src include tests meshes
+  else
     find . -path './.git' -prune -o -path './build*' -prune -o -path ./.cache -prune -o -type f -print | sed 's|^\./||'
+  fi
 }
 
 for name in $(list | sed 's|/.*||' | sort -u); do

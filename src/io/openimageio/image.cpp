@@ -245,6 +245,7 @@ void write_picture(TetcastContext *context, const char *path, const Pixels &pixe
     done = output->close() && done;
   }
   std::string reason = output->geterror();
+  std::replace(reason.begin(), reason.end(), '\n', ' ');
   if (proxy->error_number() != 0)
     fail(context, TETCAST_ERROR_IO, path, error_text(proxy->error_number()));
   if (!done)
