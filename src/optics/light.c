@@ -49,11 +49,9 @@ static int64_t piece_below(const TcPieces *pieces, double s) {
   return low;
 }
 
+/* In a piece that is not constant, at low ≤ s ≤ high. Both ends come out exactly, and a width may be denormal. */
 static TcOptics optics_at(const TcPiece *piece, double s) {
-  if (s <= piece->low) return piece->at_low;
-  if (s >= piece->high) return piece->at_high;
-  if (isinf(piece->low) || isinf(piece->high)) return piece->at_low; /* constant */
-  const double w = (s - piece->low) / (piece->high - piece->low), v = (piece->high - s) / (piece->high - piece->low);
+  const double width = piece->high - piece->low, w = (s - piece->low) / width, v = (piece->high - s) / width;
   TcOptics optics;
   optics.extinction = v * piece->at_low.extinction + w * piece->at_high.extinction;
   for (int k = 0; k < 3; ++k) optics.color[k] = v * piece->at_low.color[k] + w * piece->at_high.color[k];
@@ -61,12 +59,15 @@ static TcOptics optics_at(const TcPiece *piece, double s) {
 }
 
 static void add_piece(TcLight *light, const TcPiece *piece, double length, double s0, double s1) {
+  if (piece->constant) {
+    if (piece->at_low.extinction == 0) return; /* transparent: nothing happens on it */
+    const TcSegment segment = tc_segment_constant(piece->at_low.extinction * length);
+    add_segment(light, &segment, piece->at_low.color, piece->at_low.color);
+    return;
+  }
   const TcOptics near = optics_at(piece, s0), far = optics_at(piece, s1);
-  if (near.extinction == 0 && far.extinction == 0) return; /* transparent: nothing happens on it */
-  const TcSegment segment = near.extinction == far.extinction && near.color[0] == far.color[0] &&
-                                near.color[1] == far.color[1] && near.color[2] == far.color[2]
-                              ? tc_segment_constant(near.extinction * length)
-                              : tc_segment(near.extinction * length, far.extinction * length);
+  if (near.extinction == 0 && far.extinction == 0) return;
+  const TcSegment segment = tc_segment(near.extinction * length, far.extinction * length);
   add_segment(light, &segment, near.color, far.color);
 }
 

@@ -102,6 +102,9 @@ static void make_pieces(TetcastTransferFunction *transfer) {
     if (i < n) piece->at_high = optics_limit(&extinction, &color, x[i], limit_below);
     if (i == 0) piece->at_low = piece->at_high;
     if (i == n) piece->at_high = piece->at_low;
+    const TcOptics *a = &piece->at_low, *b = &piece->at_high;
+    piece->constant = a->extinction == b->extinction && a->color[0] == b->color[0] && a->color[1] == b->color[1] &&
+                      a->color[2] == b->color[2];
   }
   transfer->pieces = (TcPieces){n, transfer->knots, transfer->piece};
 }
@@ -174,6 +177,24 @@ TetcastStatus tc_transfer_copy(TetcastContext *context, const TetcastTransferFun
                                             .extinction = source->extinction,
                                             .extinction_count = source->extinction_count};
   return tc_transfer_create(context, &desc, out);
+}
+
+TetcastStatus tc_transfer_rescale(TetcastContext *context, const TetcastTransferFunction *source, int value_exponent,
+                                  int length_exponent, TetcastTransferFunction **out) {
+  const TetcastStatus status = tc_transfer_copy(context, source, out);
+  if (status) return status;
+  TetcastTransferFunction *copy = *out;
+  for (int64_t i = 0; i <= copy->pieces.count; ++i) { /* powers of two: no bit changes */
+    TcPiece *piece = &copy->piece[i];
+    piece->at_low.extinction = ldexp(piece->at_low.extinction, length_exponent);
+    piece->at_high.extinction = ldexp(piece->at_high.extinction, length_exponent);
+    if (value_exponent == 0) continue;
+    /* Only tiny fields are rescaled: a knot that would overflow is as far from them at 1e305. */
+    if (i > 0) copy->knots[i - 1] = fmax(-1e305, fmin(1e305, ldexp(copy->knots[i - 1], -value_exponent)));
+    if (i > 0) piece->low = copy->knots[i - 1];
+    if (i > 0) copy->piece[i - 1].high = copy->knots[i - 1];
+  }
+  return TETCAST_OK;
 }
 
 void tc_transfer_destroy(TetcastTransferFunction *transfer) {

@@ -15,6 +15,7 @@ typedef struct TcOptics {
 typedef struct TcPiece {
   double low, high; /* scalars at its ends; the outermost pieces are constant and end at ∓infinity */
   TcOptics at_low, at_high;
+  bool constant;
 } TcPiece;
 
 /* count + 1 pieces between count distinct knots: piece i ends at knot[i], piece i + 1 begins there. */
@@ -36,6 +37,10 @@ struct TetcastTransferFunction {
 
 TetcastStatus tc_transfer_create(TetcastContext *context, const TetcastTransferFunctionDesc *desc, TetcastTransferFunction **out);
 TetcastStatus tc_transfer_copy(TetcastContext *context, const TetcastTransferFunction *source, TetcastTransferFunction **out);
+
+/* A copy in other units: scalars times 2^−value_exponent, lengths times 2^−length_exponent, so extinction times 2^length_exponent. */
+TetcastStatus tc_transfer_rescale(TetcastContext *context, const TetcastTransferFunction *source, int value_exponent,
+                                  int length_exponent, TetcastTransferFunction **out);
 void tc_transfer_destroy(TetcastTransferFunction *transfer);
 
 /* Colour map `name` over [low, high] with an extinction that rises from 0 to `extinction`. */

@@ -43,8 +43,11 @@ TetcastStatus tc_preset_extinction(TetcastContext *context, const TetcastVolume 
   const double ramp[2][2] = {{low, low < high ? 0 : 1}, {high, 1}};
   const TetcastTransferFunctionDesc desc = {
     .color = gray, .color_count = 1, .extinction = ramp[0], .extinction_count = low < high ? 2 : 1};
-  TetcastTransferFunction *transfer;
-  const TetcastStatus status = tc_transfer_create(context, &desc, &transfer);
+  TetcastTransferFunction *given, *transfer;
+  TetcastStatus status = tc_transfer_create(context, &desc, &given);
+  if (status) return status;
+  status = tc_transfer_rescale(context, given, volume->value_exponent, 0, &transfer);
+  tc_transfer_destroy(given);
   if (status) return status;
   TcWorker worker = {.spans = {.context = context}};
   double depths[3 * GRID * GRID];

@@ -20,7 +20,7 @@ struct TetcastFrame {
 struct TetcastScene {
   TetcastContext *context;
   const TetcastVolume *volume;
-  TetcastTransferFunction *transfer; /* extinction per scaled length (volume.h); NULL: none set yet */
+  TetcastTransferFunction *transfer; /* NULL: none set yet */
 };
 
 /* A camera in scaled coordinates: position (u, v) ∈ [−1, 1]² of the picture looks along forward + u right + v up (perspective), or
@@ -49,7 +49,7 @@ typedef struct TcWorker {
 /* What a frame is made from; the same for all kernels. */
 typedef struct TcJob {
   const TetcastVolume *volume;
-  const TcPieces *pieces;
+  const TcPieces *pieces; /* in the volume's units */
   TcView view;
   int64_t width, height;
   int samples_x, samples_y;

@@ -23,11 +23,6 @@ TetcastStatus tc_scene_set_transfer_function(TetcastScene *scene, const TetcastT
   TetcastTransferFunction *copy;
   const TetcastStatus status = tc_transfer_copy(scene->context, transfer, &copy);
   if (status) return status;
-  /* Extinction per scaled length, so that depths are right for any unit: a power of two changes no bit. */
-  for (int64_t i = 0; i <= copy->pieces.count; ++i) {
-    copy->piece[i].at_low.extinction = ldexp(copy->piece[i].at_low.extinction, scene->volume->exponent);
-    copy->piece[i].at_high.extinction = ldexp(copy->piece[i].at_high.extinction, scene->volume->exponent);
-  }
   tc_transfer_destroy(scene->transfer);
   scene->transfer = copy;
   return TETCAST_OK;
@@ -70,17 +65,24 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   Render render = {.kernel = tc_kernel_scalar};
   TcJob *job = &render.job;
   job->volume = scene->volume;
-  job->pieces = &scene->transfer->pieces;
   job->width = frame->width;
   job->height = frame->height;
   job->frame = frame;
   sample_grid(desc->samples, &job->samples_x, &job->samples_y);
+  TetcastTransferFunction *transfer;
   TetcastStatus status =
     tc_view_create(context, camera, scene->volume, (double)frame->width / (double)frame->height, &job->view);
+  if (!status) {
+    status = tc_transfer_rescale(context, scene->transfer, scene->volume->value_exponent, scene->volume->exponent, &transfer);
+  }
   if (status) return status;
+  job->pieces = &transfer->pieces;
 
   const int threads = tc_context_threads(context);
-  if (!tc_allocate_array(context, (void **)&render.workers, threads, sizeof *render.workers, "workers")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&render.workers, threads, sizeof *render.workers, "workers")) {
+    tc_transfer_destroy(transfer);
+    return TETCAST_ERROR_MEMORY;
+  }
   memset(render.workers, 0, (size_t)threads * sizeof *render.workers);
   for (int i = 0; i < threads; ++i) render.workers[i].spans.context = context;
   render.tiles_x = (frame->width + TILE - 1) / TILE;
@@ -97,6 +99,7 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
     tc_spans_clear(&worker->spans);
   }
   tc_release(context, render.workers);
+  tc_transfer_destroy(transfer);
   if (!status && stats) *stats = sum;
   return status;
 }

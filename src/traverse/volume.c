@@ -153,12 +153,14 @@ static void *vertices_in(const TetcastVolume *volume, bool is_double) {
   return vertices;
 }
 
-static double value_of(const TetcastField *field, int64_t i) {
+/* The value as it is stored. */
+static double value_of(const TetcastField *field, int64_t i, int exponent) {
   const double s = tc_array_double(&field->values, field->values.stride, i, 0);
-  return fabs(s) <= TC_LARGEST_VALUE ? s : (double)NAN;
+  if (!(fabs(s) <= TC_LARGEST_VALUE)) return (double)NAN;
+  return exponent ? ldexp(s, -exponent) : s;
 }
 
-static TetcastStatus set_point_field(TetcastVolume *volume, const TetcastField *field) {
+static TetcastStatus set_point_field(TetcastVolume *volume, const TetcastField *field, int exponent) {
   const bool is_double = volume->mesh_is_double || field->values.type != TETCAST_TYPE_FLOAT32;
   void *vertices = vertices_in(volume, is_double);
   if (!vertices) return TETCAST_ERROR_MEMORY;
@@ -166,7 +168,7 @@ static TetcastStatus set_point_field(TetcastVolume *volume, const TetcastField *
   volume->vertices = vertices;
   volume->vertices_are_double = is_double;
   for (int64_t i = 0; i < volume->vertex_count; ++i) {
-    const double s = value_of(field, i);
+    const double s = value_of(field, i, exponent);
     if (is_double) ((double *)vertices)[4 * i + 3] = s;
     else ((float *)vertices)[4 * i + 3] = (float)s;
   }
@@ -175,13 +177,13 @@ static TetcastStatus set_point_field(TetcastVolume *volume, const TetcastField *
   return TETCAST_OK;
 }
 
-static TetcastStatus set_cell_field(TetcastVolume *volume, const TetcastField *field) {
+static TetcastStatus set_cell_field(TetcastVolume *volume, const TetcastField *field, int exponent) {
   if (!volume->cell_values && !tc_allocate_array(volume->context, (void **)&volume->cell_values, volume->cell_count,
                                                  sizeof(double), "cell values")) {
     return TETCAST_ERROR_MEMORY;
   }
   const uint32_t *source = volume->adjacency.source;
-  for (int64_t i = 0; i < volume->cell_count; ++i) volume->cell_values[i] = value_of(field, source ? source[i] : i);
+  for (int64_t i = 0; i < volume->cell_count; ++i) volume->cell_values[i] = value_of(field, source ? source[i] : i, exponent);
   return TETCAST_OK;
 }
 
@@ -192,11 +194,18 @@ TetcastStatus tc_volume_set_field(TetcastVolume *volume, const TetcastField *fie
     return tc_error(volume->context, TETCAST_ERROR_ARGUMENT, "the field has %" PRId64 " values, the mesh %" PRId64 " %s",
                     field->values.count, wanted, point ? "vertices" : "tetrahedra");
   }
-  const TetcastStatus status = point ? set_point_field(volume, field) : set_cell_field(volume, field);
+  double range[2];
+  int64_t nonfinite;
+  tc_field_range(field, range, &nonfinite);
+  const double largest = fmax(fabs(range[0]), fabs(range[1]));
+  const int exponent = largest > 0 && largest < ldexp(1, -TC_TINY_FIELD) ? -TC_TINY_FIELD : 0;
+  const TetcastStatus status = point ? set_point_field(volume, field, exponent) : set_cell_field(volume, field, exponent);
   if (status) return status;
+  volume->value_exponent = exponent;
   volume->association = field->association;
   volume->has_field = true;
-  tc_field_range(field, volume->info.field_range, &volume->info.field_nonfinite);
+  memcpy(volume->info.field_range, range, sizeof range);
+  volume->info.field_nonfinite = nonfinite;
   return TETCAST_OK;
 }
 

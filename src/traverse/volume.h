@@ -26,11 +26,15 @@ struct TetcastVolume {
   bool has_field;
   TetcastAssociation association;
   double *cell_values; /* [cell_count] with a cell field; not finite: transparent */
+  int value_exponent;  /* values are stored times 2^−value_exponent */
   TetcastVolumeInfo info;
 };
 
 /* Values of larger magnitude count as infinite: differences of two of them could overflow. */
 #define TC_LARGEST_VALUE 0x1p1022
+
+/* A field whose values are all below 2^−TC_TINY_FIELD is stored times 2^TC_TINY_FIELD, so that interpolation does not underflow. */
+#define TC_TINY_FIELD 500
 
 TetcastStatus tc_volume_create(TetcastContext *context, const TetcastMesh *mesh, const TetcastVolumeDesc *desc,
                                TetcastVolume **volume);

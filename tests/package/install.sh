@@ -112,6 +112,7 @@ unset LD_LIBRARY_PATH
 # 3. The command finds its libraries where the tree now lies.
 if [ -x "$prefix/bin/tetcast" ]; then
   quietly "$prefix/bin/tetcast" --version
+  [ -n "$(find "$prefix" -name 'tetcast.1*')" ] || fail "the manual page is not installed"
   mesh=$(find "$source/meshes" -name '*.vtu' | sort | head -n 1)
   case " $ADAPTERS " in
     *" vtk "*" openimageio "*)
