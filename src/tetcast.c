@@ -312,7 +312,7 @@ TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene, const Tet
   return tc_scene_set_transfer_function(scene, transfer_function);
 }
 
-TetcastRenderDesc tetcast_render_desc_default(void) { return (TetcastRenderDesc){.cookie = TC_COOKIE, .samples = 1}; }
+TetcastRenderDesc tetcast_render_desc_default(void) { return (TetcastRenderDesc){.cookie = TC_COOKIE, .integrator_n = 1, .samples = 1}; }
 
 static TetcastStatus check_camera(TetcastContext *context, const TetcastCamera *camera) {
   for (int k = 0; k < 3; ++k) {
@@ -344,6 +344,12 @@ TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamer
   CHECK_DESC(context, desc);
   CHECK_GIVEN(context, frame);
   if (desc->samples < 1 || desc->samples > 65536) return ARGUMENT(context, "%d samples: must be in [1, 65536]", desc->samples);
+  static const int least[] = {INT32_MIN, 1, 1, 1, 2}, most[] = {INT32_MAX, 1 << 20, 1 << 20, TETCAST_MAX_GAUSS, 4096};
+  if ((unsigned)desc->integrator > TETCAST_INTEGRATOR_TABLE) return ARGUMENT(context, "unknown integrator %d", (int)desc->integrator);
+  if (desc->integrator_n < least[desc->integrator] || desc->integrator_n > most[desc->integrator]) {
+    return ARGUMENT(context, "an integrator with n = %d: must be in [%d, %d]", desc->integrator_n, least[desc->integrator],
+                    most[desc->integrator]);
+  }
   if (!scene->volume->has_field) return ARGUMENT(context, "the volume has no field yet");
   if (!scene->transfer) return ARGUMENT(context, "the scene has no transfer function yet");
   const TetcastStatus status = check_camera(context, camera);

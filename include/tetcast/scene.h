@@ -27,8 +27,22 @@ TETCAST_API void tetcast_scene_destroy(TetcastScene **scene);
  * the scene keeps its former one. */
 TETCAST_API TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer_function);
 
+/* How the light of a cell's segment is computed. All but the exact one are what others do, there to be compared with: with n
+ * samples per segment, splitting at no knots (the table does). Cell fields are constant on a segment and always exact. */
+typedef enum TetcastIntegrator {
+  TETCAST_INTEGRATOR_EXACT = 0, /* the closed form, to rounding */
+  TETCAST_INTEGRATOR_MIDPOINT,  /* n ≥ 1 equal steps, each constant as in its middle; error O(1/n²) */
+  TETCAST_INTEGRATOR_TRAPEZOID, /* n ≥ 1 equal steps, each with the mean of its ends; O(1/n²) */
+  TETCAST_INTEGRATOR_GAUSS,     /* Gauss–Legendre with n nodes in [1, TETCAST_MAX_GAUSS]; order 2n in the segment's length */
+  TETCAST_INTEGRATOR_TABLE      /* Ψ interpolated in an n × n table, n in [2, 4096]: K. Moreland, E. Angel 2004 */
+} TetcastIntegrator;
+
+#define TETCAST_MAX_GAUSS 16
+
 typedef struct TetcastRenderDesc {
   uint32_t cookie;
+  TetcastIntegrator integrator; /* default: exact */
+  int integrator_n;             /* see there; at most 2^20; default 1; not used by exact */
   int samples;              /* rays per pixel in [1, 2^16], a regular grid as near to square as the number allows; default 1: the centre */
   TetcastProgress progress;
 } TetcastRenderDesc;

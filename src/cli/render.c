@@ -166,6 +166,8 @@ static int render(Run *run) {
   stats->render_seconds = cli_allocate(sizeof(double) * (size_t)stats->repeats);
   TetcastRenderDesc desc = tetcast_render_desc_default();
   desc.samples = (int)run->options.samples;
+  if (run->options.integrator)
+    render_option_integrator(run->options.integrator, &desc.integrator, &desc.integrator_n);
   for (int i = 0; i < stats->repeats; i++) {
     const double start = cli_seconds();
     desc.progress = cli_progress("rendering");

@@ -60,6 +60,8 @@ static const struct {
                         .form = "expected a whole number from 1 to 65536"},
     [OPTION_BACKGROUND] = {"background", KIND_NUMBERS, AT(background), 3, 4, 0, 1,
                            .form = "expected r,g,b or r,g,b,a from 0 to 1"},
+    [OPTION_INTEGRATOR] = {"integrator", KIND_TEXT, AT(integrator),
+                           .form = "expected exact, midpoint:N, trapezoid:N, gauss:N (N to 16) or table:N (N from 2 to 4096)"},
     [OPTION_TRAVERSAL] = {"traversal", KIND_CHOICE, AT(traversal), .names = traversals,
                           .form = "expected shell or faces"},
     [OPTION_THREADS] = {"threads", KIND_INTEGERS, AT(threads), 1, 1, 0, 4096,
@@ -127,6 +129,25 @@ static const char *set_preset_name(const char *name) {
   return reason;
 }
 
+bool render_option_integrator(const char *text, TetcastIntegrator *integrator, int *n) {
+  static const struct {
+    const char *name;
+    int least, most;
+  } integrators[] = {{"exact", 0, 0}, {"midpoint:", 1, 1 << 20}, {"trapezoid:", 1, 1 << 20}, {"gauss:", 1, 16}, {"table:", 2, 4096}};
+  for (int i = 0; i < 5; i++) {
+    const size_t length = strlen(integrators[i].name);
+    double number = 0;
+    if (strncmp(text, integrators[i].name, length))
+      continue;
+    if (i == 0 ? text[length] != 0 : cli_parse_numbers(text + length, ',', 1, &number) != 1)
+      return false;
+    *integrator = (TetcastIntegrator)i;
+    *n = number >= integrators[i].least && number <= integrators[i].most ? (int)number : -1;
+    return *n == number;
+  }
+  return false;
+}
+
 static const char *set_numbers(OptionId id, void *at, const OptionValue *value) {
   const double *numbers = value->numbers;
   if (value->text || value->count < table[id].least || value->count > table[id].most)
@@ -168,7 +189,11 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
   default:
     if (!value->text || !*value->text)
       return table[id].form;
+    TetcastIntegrator integrator;
+    int n;
     const char *reason = id == OPTION_PRESET ? set_preset_name(value->text) : NULL;
+    if (id == OPTION_INTEGRATOR && !render_option_integrator(value->text, &integrator, &n))
+      reason = table[id].form;
     if (!reason) {
       char **text = at;
       free(*text);

@@ -8,6 +8,8 @@
 
 #include <jansson.h>
 
+#include <tetcast/scene.h>
+
 typedef enum OptionId {
   OPTION_INPUT,
   OPTION_OUTPUT,
@@ -24,6 +26,7 @@ typedef enum OptionId {
   OPTION_SIZE,
   OPTION_SAMPLES,
   OPTION_BACKGROUND,
+  OPTION_INTEGRATOR,
   OPTION_TRAVERSAL,
   OPTION_THREADS,
   OPTION_REPEAT,
@@ -36,7 +39,7 @@ typedef enum OptionId {
 } OptionId;
 
 typedef struct RenderOptions {
-  char *input, *output, *array, *transfer, *preset, *stats, *scene, *save_scene; /* NULL unless given */
+  char *input, *output, *array, *transfer, *preset, *integrator, *stats, *scene, *save_scene; /* NULL unless given */
   json_t *transfer_object; /* of a scene file; instead of transfer */
   double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], threads, repeat;
   int opacity_model, traversal, pixel_type; /* values of the library's enumerations */
@@ -65,6 +68,9 @@ bool render_option_is_path(OptionId id);
 
 /* The name of a choice's value. */
 const char *render_option_choice(OptionId id, int value);
+
+/* What --integrator names: "exact", or "midpoint:4" and the like. False: neither. */
+bool render_option_integrator(const char *text, TetcastIntegrator *integrator, int *n);
 
 /* Sets an option. NULL, or why the value can't be (static storage or inside the options). */
 const char *render_options_set(RenderOptions *options, OptionId id, const OptionValue *value);

@@ -140,6 +140,8 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
   json_object_set_new(scene, "size", size_array(options->size));
   json_object_set_new(scene, "samples", json_integer((json_int_t)options->samples));
   json_object_set_new(scene, "background", cli_json_array(options->background, 4));
+  if (options->integrator)
+    json_object_set_new(scene, "integrator", json_string(options->integrator));
   json_object_set_new(scene, "traversal", json_string(render_option_choice(OPTION_TRAVERSAL, options->traversal)));
   if (options->pixel_type)
     json_object_set_new(scene, "pixel_type", json_string(render_option_choice(OPTION_PIXEL_TYPE, options->pixel_type)));

@@ -18,7 +18,7 @@ static void end_block(TcLight *light) {
   light->block_length = 0;
 }
 
-static void add_segment(TcLight *light, const TcSegment *segment, const double near[3], const double far[3]) {
+void tc_light_add_segment(TcLight *light, const TcSegment *segment, const double near[3], const double far[3]) {
   for (int k = 0; k < 3; ++k) {
     light->block_color[k] += light->block_transmittance * (near[k] * segment->w0 + far[k] * segment->w1);
   }
@@ -58,52 +58,82 @@ static TcOptics optics_at(const TcPiece *piece, double s) {
   return optics;
 }
 
-static void add_piece(TcLight *light, const TcPiece *piece, double length, double s0, double s1) {
+TcOptics tc_pieces_at(const TcPieces *pieces, double s) {
+  const TcPiece *piece = &pieces->pieces[piece_above(pieces, s)];
+  return piece->constant ? piece->at_low : optics_at(piece, s);
+}
+
+/* What is done with the part of a segment that lies in one piece. */
+typedef void PartFunction(const void *data, TcLight *light, const TcPiece *piece, double length, double s0, double s1);
+
+static void add_exact(const void *data, TcLight *light, const TcPiece *piece, double length, double s0, double s1) {
+  (void)data;
   if (piece->constant) {
     if (piece->at_low.extinction == 0) return; /* transparent: nothing happens on it */
     const TcSegment segment = tc_segment_constant(piece->at_low.extinction * length);
-    add_segment(light, &segment, piece->at_low.color, piece->at_low.color);
+    tc_light_add_segment(light, &segment, piece->at_low.color, piece->at_low.color);
     return;
   }
   const TcOptics near = optics_at(piece, s0), far = optics_at(piece, s1);
   if (near.extinction == 0 && far.extinction == 0) return;
   const TcSegment segment = tc_segment(near.extinction * length, far.extinction * length);
-  add_segment(light, &segment, near.color, far.color);
+  tc_light_add_segment(light, &segment, near.color, far.color);
 }
 
-void tc_light_add_constant(TcLight *light, const TcPieces *pieces, double length, double s) {
-  add_piece(light, &pieces->pieces[piece_above(pieces, s)], length, s, s);
+/* Cuts a segment at the knots. The lengths of parts come from differences of scalars, not of positions along the segment: nothing
+ * cancels. Inlined with the part's function. */
+static inline void split(TcLight *light, const TcPieces *pieces, double length, double s0, double s1, PartFunction *add,
+                         const void *data) {
+  const double whole = fabs(s1 - s0);
+  if (s0 <= s1) {
+    const TcPiece *piece = &pieces->pieces[piece_above(pieces, s0)];
+    if (piece->high >= s1) {
+      add(data, light, piece, length, s0, s1);
+      return;
+    }
+    for (; s0 < s1; ++piece) {
+      const double end = piece->high < s1 ? piece->high : s1;
+      add(data, light, piece, length * ((end - s0) / whole), s0, end);
+      s0 = end;
+    }
+  } else {
+    const TcPiece *piece = &pieces->pieces[piece_below(pieces, s0)];
+    if (piece->low <= s1) {
+      add(data, light, piece, length, s0, s1);
+      return;
+    }
+    for (; s0 > s1; --piece) {
+      const double end = piece->low > s1 ? piece->low : s1;
+      add(data, light, piece, length * ((s0 - end) / whole), s0, end);
+      s0 = end;
+    }
+  }
 }
 
 void tc_light_add(TcLight *light, const TcPieces *pieces, double length, double s0, double s1) {
-  if (s0 == s1) {
-    tc_light_add_constant(light, pieces, length, s0);
-    return;
-  }
-  const TcPiece *piece;
-  const double whole = fabs(s1 - s0);
-  /* The lengths of parts come from differences of scalars, not of positions along the segment: nothing cancels. */
-  if (s0 < s1) {
-    piece = &pieces->pieces[piece_above(pieces, s0)];
-    if (piece->high >= s1) add_piece(light, piece, length, s0, s1);
-    else {
-      for (; s0 < s1; ++piece) {
-        const double end = piece->high < s1 ? piece->high : s1;
-        add_piece(light, piece, length * ((end - s0) / whole), s0, end);
-        s0 = end;
-      }
-    }
-  } else {
-    piece = &pieces->pieces[piece_below(pieces, s0)];
-    if (piece->low <= s1) add_piece(light, piece, length, s0, s1);
-    else {
-      for (; s0 > s1; --piece) {
-        const double end = piece->low > s1 ? piece->low : s1;
-        add_piece(light, piece, length * ((s0 - end) / whole), s0, end);
-        s0 = end;
-      }
-    }
-  }
+  split(light, pieces, length, s0, s1, add_exact, NULL);
+}
+
+void tc_light_add_constant(TcLight *light, const TcPieces *pieces, double length, double s) {
+  add_exact(NULL, light, &pieces->pieces[piece_above(pieces, s)], length, s, s);
+}
+
+typedef struct Ends {
+  TcEndsFunction *function;
+  const void *data;
+} Ends;
+
+static void add_ends(const void *data, TcLight *light, const TcPiece *piece, double length, double s0, double s1) {
+  const Ends *ends = data;
+  const TcOptics near = piece->constant ? piece->at_low : optics_at(piece, s0);
+  const TcOptics far = piece->constant ? piece->at_low : optics_at(piece, s1);
+  ends->function(ends->data, light, &near, &far, length);
+}
+
+void tc_light_split(TcLight *light, const TcPieces *pieces, double length, double s0, double s1, TcEndsFunction *function,
+                    const void *data) {
+  const Ends ends = {function, data};
+  split(light, pieces, length, s0, s1, add_ends, &ends);
 }
 
 void tc_light_end(TcLight *light, double rgba[4]) {

@@ -5,6 +5,7 @@
 #include <tetcast/transfer_function.h>
 
 #include "base/base.h"
+#include "optics/segment.h"
 
 /* Extinction and colour at a scalar: κ, r, g, b. */
 typedef struct TcOptics {
@@ -69,6 +70,17 @@ void tc_light_add(TcLight *light, const TcPieces *pieces, double length, double 
 
 /* Adds a segment of constant scalar s (finite). */
 void tc_light_add_constant(TcLight *light, const TcPieces *pieces, double length, double s);
+
+/* Extinction and colour at a scalar; at a knot, the later one's. */
+TcOptics tc_pieces_at(const TcPieces *pieces, double s);
+
+/* Calls `function` for each part of a segment between knots, with what holds at the part's two ends. */
+typedef void TcEndsFunction(const void *data, TcLight *light, const TcOptics *near, const TcOptics *far, double length);
+void tc_light_split(TcLight *light, const TcPieces *pieces, double length, double s0, double s1, TcEndsFunction *function,
+                    const void *data);
+
+/* Adds a segment whose integral is known. */
+void tc_light_add_segment(TcLight *light, const TcSegment *segment, const double near[3], const double far[3]);
 
 /* Premultiplied colour and opacity of all that was added. */
 void tc_light_end(TcLight *light, double rgba[4]);

@@ -43,6 +43,7 @@ void tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, const double rgba
 /* What a worker keeps to itself. */
 typedef struct TcWorker {
   TcSpans spans;
+  const struct TcSampler *sampler; /* NULL: exact */
   int64_t segments, lost;
 } TcWorker;
 
@@ -59,10 +60,11 @@ typedef struct TcJob {
 /* A kernel renders the pixels [x0, x1) × [y0, y1). False: out of memory. */
 typedef bool TcKernel(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker);
 
-TcKernel tc_kernel_scalar;
+TcKernel tc_kernel_exact, tc_kernel_sampled;
 
 /* The light of one ray: the slow and simple way, in which a kernel may fall back on and against which it is tested. */
-bool tc_cast(const TetcastVolume *volume, const TcPieces *pieces, const TcLine *line, TcWorker *worker, TcLight *light);
+typedef bool TcCast(const TetcastVolume *volume, const TcPieces *pieces, const TcLine *line, TcWorker *worker, TcLight *light);
+TcCast tc_cast, tc_cast_sampled;
 
 TetcastStatus tc_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **scene);
 void tc_scene_destroy(TetcastScene *scene);

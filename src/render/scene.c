@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/parallel.h"
+#include "optics/sampled.h"
 #include "render/render.h"
 
 TetcastStatus tc_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **out) {
@@ -59,46 +60,53 @@ static void sample_grid(int samples, int *x, int *y) {
   *x = samples / *y;
 }
 
+/* Renders with all that is needed at hand, and sums up what the workers counted. */
+static TetcastStatus run(TetcastContext *context, Render *render, const TcSampler *sampler, const TetcastProgress *progress,
+                         TetcastRenderStats *stats) {
+  const int threads = tc_context_threads(context);
+  if (!tc_allocate_array(context, (void **)&render->workers, threads, sizeof *render->workers, "workers")) {
+    return TETCAST_ERROR_MEMORY;
+  }
+  for (int i = 0; i < threads; ++i) render->workers[i] = (TcWorker){.spans = {.context = context}, .sampler = sampler};
+  render->tiles_x = (render->job.width + TILE - 1) / TILE;
+  const int64_t tiles = render->tiles_x * ((render->job.height + TILE - 1) / TILE);
+  TetcastStatus status = tc_parallel_for(context, tiles, 1, render_tiles, render, progress);
+  for (int i = 0; i < threads; ++i) {
+    TcWorker *worker = &render->workers[i];
+    if (worker->spans.out_of_memory) status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: hits of a ray");
+    stats->segments += worker->segments;
+    stats->lost += worker->lost;
+    tc_spans_clear(&worker->spans);
+  }
+  tc_release(context, render->workers);
+  return status;
+}
+
 TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
                               TetcastFrame *frame, TetcastRenderStats *stats) {
   TetcastContext *context = scene->context;
-  Render render = {.kernel = tc_kernel_scalar};
+  const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
+  Render render = {.kernel = exact ? tc_kernel_exact : tc_kernel_sampled};
   TcJob *job = &render.job;
   job->volume = scene->volume;
   job->width = frame->width;
   job->height = frame->height;
   job->frame = frame;
   sample_grid(desc->samples, &job->samples_x, &job->samples_y);
-  TetcastTransferFunction *transfer;
-  TetcastStatus status =
-    tc_view_create(context, camera, scene->volume, (double)frame->width / (double)frame->height, &job->view);
+  TetcastRenderStats sum = {.rays = frame->width * frame->height * desc->samples, .isa = "scalar", .precision = "double"};
+  TetcastTransferFunction *transfer = NULL;
+  TcSampler *sampler = NULL;
+  const double aspect = (double)frame->width / (double)frame->height;
+  TetcastStatus status = tc_view_create(context, camera, scene->volume, aspect, &job->view);
   if (!status) {
     status = tc_transfer_rescale(context, scene->transfer, scene->volume->value_exponent, scene->volume->exponent, &transfer);
   }
-  if (status) return status;
-  job->pieces = &transfer->pieces;
-
-  const int threads = tc_context_threads(context);
-  if (!tc_allocate_array(context, (void **)&render.workers, threads, sizeof *render.workers, "workers")) {
-    tc_transfer_destroy(transfer);
-    return TETCAST_ERROR_MEMORY;
+  if (!status && !exact) status = tc_sampler_create(context, desc->integrator, desc->integrator_n, &sampler);
+  if (!status) {
+    job->pieces = &transfer->pieces;
+    status = run(context, &render, sampler, &desc->progress, &sum);
   }
-  memset(render.workers, 0, (size_t)threads * sizeof *render.workers);
-  for (int i = 0; i < threads; ++i) render.workers[i].spans.context = context;
-  render.tiles_x = (frame->width + TILE - 1) / TILE;
-  const int64_t tiles = render.tiles_x * ((frame->height + TILE - 1) / TILE);
-  status = tc_parallel_for(context, tiles, 1, render_tiles, &render, &desc->progress);
-
-  TetcastRenderStats sum = {
-    .rays = frame->width * frame->height * desc->samples, .isa = "scalar", .precision = "double"};
-  for (int i = 0; i < threads; ++i) {
-    TcWorker *worker = &render.workers[i];
-    if (worker->spans.out_of_memory) status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: hits of a ray");
-    sum.segments += worker->segments;
-    sum.lost += worker->lost;
-    tc_spans_clear(&worker->spans);
-  }
-  tc_release(context, render.workers);
+  tc_sampler_destroy(sampler);
   tc_transfer_destroy(transfer);
   if (!status && stats) *stats = sum;
   return status;

@@ -133,10 +133,11 @@ static void rotation(void **state) {
   cube_destroy(&cube), cube_destroy(&turned);
 }
 
-/* A linear field is the same on any mesh: coarse, fine, jittered. */
+/* A linear field is the same on any mesh: coarse, fine, jittered; also seen from inside, where the first cell is cut at the eye. */
 static void refinement(void **state) {
   (void)state;
-  double *first = NULL;
+  const TetcastCamera inside = {.eye = {0.41, 0.37, 0.83}, .target = {0.9, 0.6, 0.1}, .up = {0, 1, 0}, .fovy = 70};
+  double *first[2] = {NULL, NULL};
   const int sizes[] = {1, 2, 7, 16};
   for (int i = 0; i < 4; ++i) {
     Cube cube = cube_create(sizes[i], 0.5);
@@ -144,15 +145,17 @@ static void refinement(void **state) {
       const double *p = &cube.vertices[3 * j];
       cube.values[j] = 0.1 + 0.45 * p[0] + 0.35 * p[1] - 0.25 * p[2];
     }
-    double *pixels = render(&cube, &oblique, 1);
-    if (!first) first = pixels;
-    else {
-      assert_true(largest_difference(first, pixels, VALUES) < 1e-12);
-      free(pixels);
+    for (int k = 0; k < 2; ++k) {
+      double *pixels = render(&cube, k ? &inside : &oblique, 1);
+      if (!first[k]) first[k] = pixels;
+      else {
+        assert_true(largest_difference(first[k], pixels, VALUES) < 1e-12);
+        free(pixels);
+      }
     }
     cube_destroy(&cube);
   }
-  free(first);
+  free(first[0]), free(first[1]);
 }
 
 /* The same rays from the other side: the same transmittance. Orthographic, so that pixel (x, y) has its partner at (W − 1 − x, y). */

@@ -21,6 +21,7 @@ round_trip --samples 5 --traversal faces
 round_trip --array v:1 --preset inferno --range 0.1,0.7
 round_trip --array 'c d' --transfer data/t.json
 round_trip --transfer data/t.json --opacity-model ospray
+round_trip --integrator gauss:2
 round_trip --eye 3,1.1,2 --fovy 17.3
 round_trip --ortho 1.7 --up 0,0,1 --background 0.1,0.2,0.3,0.4 --quiet
 round_trip --eye 0.5,0.5,0.5 --target 1,0.3,0.2 --up 1,1,1

@@ -54,6 +54,9 @@ refuse 2 'uint8' render a.vtu --pixel-type int8
 refuse 2 'uint8' render a.vtu --pixel-type ''
 refuse 2 'shell or faces' render a.vtu --traversal walk
 refuse 2 'vtk-unstructured' render a.vtu --opacity-model vtk
+for integrator in exact:2 midpoint midpoint: midpoint:0 midpoint:1.5 gauss:17 table:1 table:x simpson:3; do
+  refuse 2 'gauss:N' render a.vtu --integrator "$integrator"
+done
 refuse 2 'exclude each other' render a.vtu --fovy 30 --ortho 1
 refuse 2 'exclude each other' render a.vtu --transfer t.json --preset viridis
 refuse 2 'exclude each other' render a.vtu --range 0,1 --transfer t.json

@@ -277,7 +277,7 @@ static void nan_vertices_are_holes(void **state) {
     TetcastContext *context = world.fixture.context;
     const int64_t hole = world.cube.vertex_count / 2;
     const double value = world.cube.values[hole];
-    world.cube.values[hole] = traversal ? (double)NAN : -(double)INFINITY;
+    world.cube.values[hole] = traversal ? (double)NAN : (double)INFINITY;
     TetcastField *field = field_of(context, world.cube.values, world.cube.vertex_count, TETCAST_POINT);
     assert_int_equal(tetcast_volume_set_field(world.volume, field), TETCAST_OK);
     tetcast_field_destroy(&field);

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The scalar kernel: one ray at a time, in double precision. It is the specification that faster kernels are tested against. */
+/* The scalar kernel: one ray at a time, in double precision. It is the specification that faster kernels are tested against. Compiled
+ * once for each way to integrate, so that the exact one pays nothing for the others: the including file defines
+ *     ADD_POINT(light, pieces, length, s0, s1)   what is done with a segment of a point field
+ *     KERNEL, CAST                               the names of the two functions */
 #include <math.h>
 
 #include "render/render.h"
@@ -13,7 +16,7 @@ static void add_part(const TetcastVolume *volume, const TcPieces *pieces, uint32
     const double s = volume->cell_values[cell];
     if (!isnan(s)) tc_light_add_constant(light, pieces, z1 - z0, s);
   } else if (!isnan(s0) && !isnan(s1)) { /* two faces have all four vertices of the cell between them: its NaN shows */
-    tc_light_add(light, pieces, z1 - z0, s0, s1);
+    ADD_POINT(light, pieces, z1 - z0, s0, s1);
   }
 }
 
@@ -65,7 +68,7 @@ static void cast_faces(const TetcastVolume *volume, const TcPieces *pieces, cons
   }
 }
 
-bool tc_cast(const TetcastVolume *volume, const TcPieces *pieces, const TcLine *line, TcWorker *worker, TcLight *light) {
+bool CAST(const TetcastVolume *volume, const TcPieces *pieces, const TcLine *line, TcWorker *worker, TcLight *light) {
   TcRay ray;
   *light = tc_light_begin();
   if (!tc_ray_begin(volume, line, &ray)) return true;
@@ -75,7 +78,7 @@ bool tc_cast(const TetcastVolume *volume, const TcPieces *pieces, const TcLine *
   return true;
 }
 
-bool tc_kernel_scalar(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker) {
+bool KERNEL(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker) {
   const int samples = job->samples_x * job->samples_y;
   const double columns = (double)(job->width * job->samples_x), rows = (double)(job->height * job->samples_y);
   for (int64_t y = y0; y < y1; ++y) {
@@ -88,7 +91,7 @@ bool tc_kernel_scalar(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int6
         TcLine line;
         TcLight light;
         tc_view_line(&job->view, 2 * column / columns - 1, 1 - 2 * row / rows, &line);
-        if (!tc_cast(job->volume, job->pieces, &line, worker, &light)) return false;
+        if (!CAST(job->volume, job->pieces, &line, worker, &light)) return false;
         tc_light_end(&light, rgba);
         for (int k = 0; k < 4; ++k) sum[k] += rgba[k];
       }
