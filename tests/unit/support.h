@@ -196,7 +196,8 @@ static inline double largest_difference(const double *a, const double *b, size_t
   double largest = 0;
   for (size_t i = 0; i < count; ++i) {
     const double d = fabs(a[i] - b[i]);
-    if (!(d <= largest)) largest = d; /* NaN shows */
+    if (isnan(d)) return INFINITY;
+    if (d > largest) largest = d;
   }
   return largest;
 }
