@@ -20,9 +20,9 @@ extern "C" {
  * Immutable; may be read from several threads at a time. */
 typedef struct TetcastDataset TetcastDataset;
 
-/* Reads a file; the format is told by content and extension. TETCAST_ERROR_IO: can't be opened. TETCAST_ERROR_DATA: truncated,
+/* Reads a .vtu, .pvtu, legacy .vtk or Exodus (first time, all element blocks) file; the format is told by content, then extension. TETCAST_ERROR_IO: can't be opened. TETCAST_ERROR_DATA: truncated,
  * damaged, no mesh, no cells, only surface cells, non-finite coordinates, indices out of range. The reader library's own complaints
- * become part of the message. */
+ * become part of the message. An Exodus file is tried in a child process first: VTK's reader of it crashes on some damaged ones. */
 TETCAST_API TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, TetcastDataset **dataset);
 
 /* Frees the dataset and sets *dataset to NULL. NULL and pointer to NULL do nothing. */

@@ -6,8 +6,9 @@ if [ ! -d "$TETCAST_DATA/volumes" ]; then
   echo "skipped: no datasets in '$TETCAST_DATA'"
   exit 77
 fi
-for file in "$TETCAST_DATA"/volumes/*.vtu; do
-  name=$(basename "$file" .vtu)
+for file in "$TETCAST_DATA"/volumes/*.vtu "$TETCAST_DATA"/volumes/*.ex2; do
+  name=$(basename "$file")
+  name=${name%.*}
   accept render "$file" --size 200x150
   exists "$name.png"
   [ "$(stat -c %s "$name.png")" -gt 2000 ] || fail "$name: the picture is nearly empty"

@@ -108,7 +108,7 @@ static void test_defects(void **state) {
   read_bad(fixture, "/dev/null", TETCAST_ERROR_IO, "not a regular file");
   static const char hdf[] = "\x89HDF\r\n\x1a\n", netcdf[] = "CDF\x01\0\0\0";
   read_bad(fixture, file_of(fixture, "a.e", hdf, sizeof hdf), TETCAST_ERROR_UNSUPPORTED, "HDF5");
-  read_bad(fixture, file_of(fixture, "a.ex2", netcdf, sizeof netcdf), TETCAST_ERROR_UNSUPPORTED, "NetCDF");
+  read_bad(fixture, file_of(fixture, "a.ex2", netcdf, sizeof netcdf), TETCAST_ERROR_DATA, "NetCDF");
 }
 
 /* A cell with more points than its type has is read, with a warning. */

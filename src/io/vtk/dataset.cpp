@@ -26,6 +26,8 @@ static const struct {
     {"VTKFile UnstructuredGrid", ".vtu", read_vtu},
     {"VTKFile PUnstructuredGrid", ".pvtu", read_pvtu},
     {"vtk UNSTRUCTURED_GRID", ".vtk", read_legacy_grid},
+    {"NetCDF", ".ex2", read_exodus},
+    {"HDF5", ".exo", read_exodus},
 };
 
 static Grid read_grid(TetcastContext *context, const char *path) {

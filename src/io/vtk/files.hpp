@@ -14,6 +14,8 @@ vtkSmartPointer<vtkUnstructuredGrid> read_vtu(const char *path);
 vtkSmartPointer<vtkUnstructuredGrid> read_pvtu(const char *path);
 vtkSmartPointer<vtkPolyData> read_vtp(const char *path);
 vtkSmartPointer<vtkUnstructuredGrid> read_legacy_grid(const char *path);
+vtkSmartPointer<vtkUnstructuredGrid> read_exodus(const char *path);
+void check_netcdf(const char *path); // fails where the file is shorter than it says
 vtkSmartPointer<vtkPolyData> read_legacy_surface(const char *path);
 
 } // namespace tcv
