@@ -2,6 +2,7 @@
 // Writing meshes and fields as .vtu.
 #include "common.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
@@ -141,6 +142,21 @@ static vtkSmartPointer<vtkUnstructuredGrid> make_grid(const TetcastMesh *mesh, i
 }
 
 // A new, empty file beside the target, gone with this object unless it has become the target.
+// VTK notes errno too late, when other calls have changed it. So once more: writes as many bytes as the file could have had, until
+// that fails, and says with which error; 0: it does not fail now.
+int why_not_written(const char *path, unsigned long kibibytes) {
+  static const char zeros[65536] = {};
+  const int file = open(path, O_CREAT | O_WRONLY | O_TRUNC | O_CLOEXEC, 0666);
+  int error = file < 0 ? errno : 0;
+  for (uint64_t left = uint64_t{kibibytes} * 1024 + sizeof zeros; error == 0 && left > 0;) {
+    const ssize_t written = write(file, zeros, std::min<uint64_t>(left, sizeof zeros));
+    if (written > 0) left -= static_cast<uint64_t>(written);
+    else if (errno != EINTR) error = errno;
+  }
+  if (file >= 0) close(file);
+  return error;
+}
+
 class Temporary {
 public:
   explicit Temporary(const char *target) : target_(target) {
@@ -191,8 +207,10 @@ static void write_grid(const char *path, vtkUnstructuredGrid *grid, const Captur
   const bool written = writer->Write() == 1 && !capture.failed();
   if (!written) {
     const unsigned long code = writer->GetErrorCode();
+    const int error = why_not_written(temporary.path(), grid->GetActualMemorySize());
     const char *reason = "VTK does not say why";
-    if (code == vtkErrorCode::OutOfDiskSpaceError) reason = std::strerror(ENOSPC);
+    if (error != 0) reason = std::strerror(error);
+    else if (code == vtkErrorCode::OutOfDiskSpaceError) reason = std::strerror(ENOSPC);
     else if (code != vtkErrorCode::NoError) reason = vtkErrorCode::GetStringFromErrorCode(code);
     else if (!capture.error().empty()) reason = capture.error().c_str();
     fail(TETCAST_ERROR_IO, "%s: can't be written: %s", path, reason);
