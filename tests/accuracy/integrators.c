@@ -94,10 +94,7 @@ static void pictures_converge(void **state) {
   Fixture fixture;
   assert_int_equal(fixture_begin(&fixture, 2, 0), TETCAST_OK);
   Cube cube = cube_create(4, 0.5);
-  TetcastMesh *mesh = cube_mesh(fixture.context, &cube);
-  TetcastVolume *volume = volume_of(fixture.context, mesh, TETCAST_TRAVERSAL_SHELL);
-  TetcastField *field = field_of(fixture.context, cube.values, cube.vertex_count, TETCAST_POINT);
-  assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
+  TetcastVolume *volume = cube_volume(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
   TetcastTransferFunction *transfer = transfer_of(fixture.context, 1);
   TetcastScene *scene;
   assert_int_equal(tetcast_scene_create(fixture.context, volume, &scene), TETCAST_OK);
@@ -131,9 +128,7 @@ static void pictures_converge(void **state) {
   tetcast_frame_destroy(&frame);
   tetcast_scene_destroy(&scene);
   tetcast_transfer_function_destroy(&transfer);
-  tetcast_field_destroy(&field);
   tetcast_volume_destroy(&volume);
-  tetcast_mesh_destroy(&mesh);
   cube_destroy(&cube);
   fixture_end(&fixture);
 }

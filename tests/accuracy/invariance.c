@@ -10,16 +10,11 @@ enum { W = 40, H = 30, VALUES = W * H * 4 };
 static double *render(const Cube *cube, const TetcastCamera *camera, double extinction) {
   Fixture fixture;
   assert_int_equal(fixture_begin(&fixture, 2, 0), TETCAST_OK);
-  TetcastMesh *mesh = cube_mesh(fixture.context, cube);
-  TetcastVolume *volume = volume_of(fixture.context, mesh, TETCAST_TRAVERSAL_SHELL);
-  TetcastField *field = field_of(fixture.context, cube->values, cube->vertex_count, TETCAST_POINT);
-  assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
+  TetcastVolume *volume = cube_volume(fixture.context, cube, TETCAST_TRAVERSAL_SHELL);
   TetcastTransferFunction *transfer = transfer_of(fixture.context, extinction);
   double *pixels = picture(fixture.context, volume, transfer, camera, W, H, NULL);
   tetcast_transfer_function_destroy(&transfer);
-  tetcast_field_destroy(&field);
   tetcast_volume_destroy(&volume);
-  tetcast_mesh_destroy(&mesh);
   fixture_end(&fixture);
   return pixels;
 }
@@ -203,10 +198,7 @@ static void opacity_is_extinction(void **state) {
   Fixture fixture;
   assert_int_equal(fixture_begin(&fixture, 2, 0), TETCAST_OK);
   Cube cube = cube_create(5, 0.5);
-  TetcastMesh *mesh = cube_mesh(fixture.context, &cube);
-  TetcastVolume *volume = volume_of(fixture.context, mesh, TETCAST_TRAVERSAL_SHELL);
-  TetcastField *field = field_of(fixture.context, cube.values, cube.vertex_count, TETCAST_POINT);
-  assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
+  TetcastVolume *volume = cube_volume(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
   const double color[2][4] = {{0, 1, 0.5, 0}, {1, 0, 0.5, 1}}, opacity[3][2] = {{0, 0.01}, {0.5, 0.9}, {1, 0.2}};
   double extinction[3][2];
   for (int i = 0; i < 3; ++i) {
@@ -230,9 +222,7 @@ static void opacity_is_extinction(void **state) {
   }
   assert_true(largest_difference(pixels[0], pixels[1], VALUES) < 1e-14);
   free(pixels[0]), free(pixels[1]);
-  tetcast_field_destroy(&field);
   tetcast_volume_destroy(&volume);
-  tetcast_mesh_destroy(&mesh);
   cube_destroy(&cube);
   fixture_end(&fixture);
 }

@@ -167,10 +167,7 @@ static void render(const Scene *scene, TetcastTraversal traversal, double rgba[4
     cell[0] = i / 6 * 4;
     for (int k = 0; k < 3; ++k) cell[k + 1] = cell[k] + step[order[i % 6][k]];
   }
-  TetcastMesh *mesh = cube_mesh(fixture.context, &bar);
-  TetcastVolume *volume = volume_of(fixture.context, mesh, traversal);
-  TetcastField *field = field_of(fixture.context, bar.values, bar.vertex_count, TETCAST_POINT);
-  assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
+  TetcastVolume *volume = cube_volume(fixture.context, &bar, traversal);
   TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
   desc.color = scene->color[0];
   desc.color_count = scene->colors;
@@ -192,9 +189,7 @@ static void render(const Scene *scene, TetcastTraversal traversal, double rgba[4
   memcpy(rgba, pixels, 4 * sizeof *rgba);
   free(pixels);
   tetcast_transfer_function_destroy(&transfer);
-  tetcast_field_destroy(&field);
   tetcast_volume_destroy(&volume);
-  tetcast_mesh_destroy(&mesh);
   cube_destroy(&bar);
   fixture_end(&fixture);
 }

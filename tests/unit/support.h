@@ -143,6 +143,17 @@ static inline TetcastVolume *volume_of(TetcastContext *context, const TetcastMes
   return volume;
 }
 
+/* A volume of the cube with its point field; it keeps nothing of mesh and field, which go again. */
+static inline TetcastVolume *cube_volume(TetcastContext *context, const Cube *cube, TetcastTraversal traversal) {
+  TetcastMesh *mesh = cube_mesh(context, cube);
+  TetcastField *field = field_of(context, cube->values, cube->vertex_count, TETCAST_POINT);
+  TetcastVolume *volume = volume_of(context, mesh, traversal);
+  assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
+  tetcast_field_destroy(&field);
+  tetcast_mesh_destroy(&mesh);
+  return volume;
+}
+
 /* Colour and extinction with several knots and a step, extinction times `factor`. */
 static inline TetcastTransferFunction *transfer_of(TetcastContext *context, double factor) {
   static const double color[][4] = {{0, 1, 0, 0}, {0.4, 0, 1, 0}, {0.4, 0.2, 0.3, 0.9}, {1, 0.5, 0.7, 1}};
