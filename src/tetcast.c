@@ -272,6 +272,9 @@ TetcastStatus tetcast_frame_create(TetcastContext *context, const TetcastFrameDe
                     largest);
   }
   if (!tc_type_is_float(desc->type)) return ARGUMENT(context, "a frame's type must be float32 or float64");
+  if (desc->channels & ~(uint32_t)TETCAST_CHANNEL_ERROR) {
+    return ARGUMENT(context, "a frame with channels 0x%" PRIx32 ": some are unknown", desc->channels);
+  }
   const int64_t row = desc->width * 4 * (int64_t)tc_type_size(desc->type);
   if (desc->pixels && desc->row_stride != 0 && desc->row_stride < row && desc->row_stride > -row) {
     return ARGUMENT(context, "a row stride of %" PRId64 " bytes, but a row has %" PRId64, desc->row_stride, row);
@@ -290,6 +293,9 @@ int64_t tetcast_frame_height(const TetcastFrame *frame) { return frame->height; 
 TetcastType tetcast_frame_type(const TetcastFrame *frame) { return frame->type; }
 const void *tetcast_frame_pixels(const TetcastFrame *frame) { return frame->pixels; }
 int64_t tetcast_frame_row_stride(const TetcastFrame *frame) { return frame->row_stride; }
+const void *tetcast_frame_channel(const TetcastFrame *frame, TetcastChannel channel) {
+  return channel == TETCAST_CHANNEL_ERROR ? frame->error : NULL;
+}
 
 /* ── scene ── */
 
@@ -349,6 +355,13 @@ TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamer
   if (desc->integrator_n < least[desc->integrator] || desc->integrator_n > most[desc->integrator]) {
     return ARGUMENT(context, "an integrator with n = %d: must be in [%d, %d]", desc->integrator_n, least[desc->integrator],
                     most[desc->integrator]);
+  }
+  if (!(desc->tolerance >= 0) || !isfinite(desc->tolerance)) {
+    return ARGUMENT(context, "a tolerance of %g: must be 0 or a positive number", desc->tolerance);
+  }
+  if (desc->integrator != TETCAST_INTEGRATOR_EXACT && (desc->tolerance > 0 || frame->error)) {
+    return ARGUMENT(context, "only the exact integrator knows its error: no %s with another",
+                    frame->error ? "channel for the error" : "tolerance");
   }
   if (!scene->volume->has_field) return ARGUMENT(context, "the volume has no field yet");
   if (!scene->transfer) return ARGUMENT(context, "the scene has no transfer function yet");

@@ -13,8 +13,16 @@
 extern "C" {
 #endif
 
-/* A picture in memory: red, green, blue, alpha, colour premultiplied, row 0 at the top, values as composited. */
+/* A picture in memory: red, green, blue, alpha, colour premultiplied, row 0 at the top, values as composited; and the channels
+ * that were asked for besides, each an array of its own. */
 typedef struct TetcastFrame TetcastFrame;
+
+/* Channels beside red, green, blue, alpha; bits of a set. */
+typedef enum TetcastChannel {
+  /* A bound on the error of each of the pixel's four channels: what the tolerance let go, rounding in the integral and in the sum
+   * over a ray's segments, rounding to the frame's type. Where the ray meets the faces is taken as computed. */
+  TETCAST_CHANNEL_ERROR = 1
+} TetcastChannel;
 
 typedef struct TetcastFrameDesc {
   uint32_t cookie;
@@ -22,6 +30,7 @@ typedef struct TetcastFrameDesc {
   TetcastType type;      /* TETCAST_TYPE_FLOAT32 or TETCAST_TYPE_FLOAT64 (default); integration is in double either way */
   void *pixels;          /* [height][width][4] of `type`, borrowed while the frame lives; NULL: the frame allocates */
   int64_t row_stride;    /* bytes from row to row of `pixels`; 0: rows lie next to each other */
+  uint32_t channels;     /* TetcastChannel bits; default 0. The frame allocates these */
 } TetcastFrameDesc;
 
 TETCAST_API TetcastFrameDesc tetcast_frame_desc_default(void);
@@ -36,6 +45,10 @@ TETCAST_API int64_t tetcast_frame_height(const TetcastFrame *frame);
 TETCAST_API TetcastType tetcast_frame_type(const TetcastFrame *frame);
 TETCAST_API const void *tetcast_frame_pixels(const TetcastFrame *frame);
 TETCAST_API int64_t tetcast_frame_row_stride(const TetcastFrame *frame); /* bytes, never 0 */
+
+/* The values of one channel, [height][width] of the frame's type, rows next to each other, valid while the frame lives; NULL if
+ * the frame was made without it. */
+TETCAST_API const void *tetcast_frame_channel(const TetcastFrame *frame, TetcastChannel channel);
 
 #ifdef __cplusplus
 }

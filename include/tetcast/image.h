@@ -33,7 +33,8 @@ TETCAST_API TetcastImageDesc tetcast_image_desc_default(void);
 
 /* Writes the frame; the format is told by the path's extension: .png .exr .tif .tiff .jpg .jpeg, also .bmp .tga .webp .ppm .hdr. A pixel
  * type the format can't hold, an unknown extension: TETCAST_ERROR_ARGUMENT. Over a translucent background, integer formats with alpha
- * hold unassociated colour. The file appears whole or not at all. */
+ * hold unassociated colour. A frame's error channel becomes a fifth, named "error" in EXR, of .exr and .tif with floating-point pixels (float
+ * beside half in .exr); what can't hold it: TETCAST_ERROR_ARGUMENT. The file appears whole or not at all. */
 TETCAST_API TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, const TetcastFrame *frame,
                                               const TetcastImageDesc *desc);
 

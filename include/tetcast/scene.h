@@ -44,6 +44,8 @@ typedef struct TetcastRenderDesc {
   TetcastIntegrator integrator; /* default: exact */
   int integrator_n;             /* see there; at most 2^20; default 1; not used by exact */
   int samples;              /* rays per pixel in [1, 2^16], a regular grid as near to square as the number allows; default 1: the centre */
+  double tolerance; /* ≥ 0, finite; default 0: exact. Else, a picture sooner: none of a pixel's four channels is further than this from the
+                     * exact picture's. Absolute, in the units of the channel (alpha: 1 is opaque). Only with the exact integrator. */
   TetcastProgress progress;
 } TetcastRenderDesc;
 
@@ -52,12 +54,13 @@ TETCAST_API TetcastRenderDesc tetcast_render_desc_default(void);
 typedef struct TetcastRenderStats {
   int64_t rays;         /* cast: width × height × samples */
   int64_t segments;     /* cells crossed over a length > 0, summed over the rays */
+  double error;         /* largest of the pixels' bounds as in TETCAST_CHANNEL_ERROR; NaN with another integrator than the exact one */
   int64_t lost;         /* rays whose walk ended before the boundary: 0, or a defect of tetcast */
   const char *isa;      /* instruction set of the kernel that ran; static storage */
   const char *precision; /* of the arithmetic: "double"; static storage */
 } TetcastRenderStats;
 
-/* Renders into every pixel of `frame`. `desc` and `stats` may be NULL. The volume must have a field and the scene a transfer
+/* Renders into every pixel of `frame`, all its channels. `desc` and `stats` may be NULL. The volume must have a field and the scene a transfer
  * function (TETCAST_ERROR_ARGUMENT). The result has the same bits for any number of threads. After an error or a
  * cancelled call the frame's pixels are unspecified and the scene is as before. Calls with different frames may run at
  * the same time, also on one scene. */

@@ -70,13 +70,15 @@ static void add_exact(const void *data, TcLight *light, const TcPiece *piece, do
   (void)data;
   if (piece->constant) {
     if (piece->at_low.extinction == 0) return; /* transparent: nothing happens on it */
-    const TcSegment segment = tc_segment_constant(piece->at_low.extinction * length);
+    const double depth = piece->at_low.extinction * length;
+    const TcSegment segment = depth <= light->thin ? tc_segment_thin(depth, depth) : tc_segment_constant(depth);
     tc_light_add_segment(light, &segment, piece->at_low.color, piece->at_low.color);
     return;
   }
   const TcOptics near = optics_at(piece, s0), far = optics_at(piece, s1);
   if (near.extinction == 0 && far.extinction == 0) return;
-  const TcSegment segment = tc_segment(near.extinction * length, far.extinction * length);
+  const double a = near.extinction * length, a1 = far.extinction * length;
+  const TcSegment segment = 0.5 * a + 0.5 * a1 <= light->thin ? tc_segment_thin(a, a1) : tc_segment(a, a1);
   tc_light_add_segment(light, &segment, near.color, far.color);
 }
 

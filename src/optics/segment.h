@@ -20,6 +20,10 @@ typedef struct TcSegment {
 /* a, a1 ≥ 0, not NaN; values above 1e300 count as 1e300. Relative errors of w0, w1 and alpha are below 4e-15. */
 TcSegment tc_segment(double a, double a1);
 
+/* The same for T ≤ 1/2 by short polynomials: weights, alpha and transmittance are off by less than T⁵/120 in all, which is less than
+ * alpha T⁴/90. */
+TcSegment tc_segment_thin(double a, double a1);
+
 /* The same for a = a1 = depth: no Ψ. */
 TcSegment tc_segment_constant(double depth);
 

@@ -56,20 +56,30 @@ typedef struct TcLight {
   double color[3], depth, transmittance;                   /* total of the finished blocks */
   double block_color[3], block_depth, block_transmittance; /* of the block under way */
   int block_length;
+  double thin;                                             /* depth up to which a segment may be evaluated by tc_segment_thin() */
+  double opaque;                                           /* depth beyond which the light is complete */
+  bool stopped;                                            /* there may have been more behind */
 } TcLight;
-
-static inline TcLight tc_light_begin(void) { return (TcLight){.transmittance = 1, .block_transmittance = 1}; }
 
 /* Optical depth beyond which e^−τ is zero in double precision: what lies behind can't change a bit of the colour. */
 #define TC_OPAQUE_DEPTH 746.0
 
-static inline bool tc_light_opaque(const TcLight *light) { return light->depth + light->block_depth > TC_OPAQUE_DEPTH; }
+/* With a tolerance's limits; exact: −1, TC_OPAQUE_DEPTH. */
+static inline TcLight tc_light_begin(double thin, double opaque) {
+  return (TcLight){.transmittance = 1, .block_transmittance = 1, .thin = thin, .opaque = opaque};
+}
+
+/* Whether the light is complete; notes it. */
+static inline bool tc_light_opaque(TcLight *light) {
+  return light->stopped = light->depth + light->block_depth > light->opaque;
+}
 
 /* Adds what a segment of length `length` > 0 with scalars s0 → s1 (finite, linear in between) emits and absorbs. */
 void tc_light_add(TcLight *light, const TcPieces *pieces, double length, double s0, double s1);
 
 /* Adds a segment of constant scalar s (finite). */
 void tc_light_add_constant(TcLight *light, const TcPieces *pieces, double length, double s);
+
 
 /* Extinction and colour at a scalar; at a knot, the later one's. */
 TcOptics tc_pieces_at(const TcPieces *pieces, double s);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#include <math.h>
 #include <string.h>
 
 #include "render/render.h"
@@ -22,6 +23,13 @@ TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *d
     memset(frame->memory, 0, (size_t)(row * desc->height));
     frame->pixels = frame->memory;
   }
+  if (desc->channels & TETCAST_CHANNEL_ERROR) {
+    if (!tc_allocate_array(context, &frame->error, desc->width * desc->height, tc_type_size(desc->type), "error channel")) {
+      tc_frame_destroy(frame);
+      return TETCAST_ERROR_MEMORY;
+    }
+    memset(frame->error, 0, (size_t)(desc->width * desc->height) * tc_type_size(desc->type));
+  }
   *out = frame;
   return TETCAST_OK;
 }
@@ -29,15 +37,22 @@ TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *d
 void tc_frame_destroy(TetcastFrame *frame) {
   if (!frame) return;
   tc_release(frame->context, frame->memory);
+  tc_release(frame->context, frame->error);
   tc_release(frame->context, frame);
 }
 
-void tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, const double rgba[4]) {
+double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, const double rgba[4], double error) {
   char *row = (char *)frame->pixels + y * frame->row_stride;
   if (frame->type == TETCAST_TYPE_FLOAT64) {
     memcpy(row + x * 4 * (int64_t)sizeof(double), rgba, 4 * sizeof(double));
-  } else {
-    const float pixel[4] = {(float)rgba[0], (float)rgba[1], (float)rgba[2], (float)rgba[3]};
-    memcpy(row + x * 4 * (int64_t)sizeof(float), pixel, sizeof pixel);
+    if (frame->error) ((double *)frame->error)[y * frame->width + x] = error;
+    return error;
   }
+  const float pixel[4] = {(float)rgba[0], (float)rgba[1], (float)rgba[2], (float)rgba[3]};
+  memcpy(row + x * 4 * (int64_t)sizeof(float), pixel, sizeof pixel);
+  double rounding = 0;
+  for (int k = 0; k < 4; ++k) rounding = fmax(rounding, fabs((double)pixel[k] - rgba[k]));
+  const float bound = error + rounding > 0 ? nextafterf((float)(error + rounding), INFINITY) : 0;
+  if (frame->error) ((float *)frame->error)[y * frame->width + x] = bound;
+  return (double)bound;
 }

@@ -70,7 +70,7 @@ static void cast_faces(const TetcastVolume *volume, const TcPieces *pieces, cons
 
 bool CAST(const TetcastVolume *volume, const TcPieces *pieces, const TcLine *line, TcWorker *worker, TcLight *light) {
   TcRay ray;
-  *light = tc_light_begin();
+  *light = tc_light_begin(worker->tolerance.thin, worker->tolerance.opaque);
   if (!tc_ray_begin(volume, line, &ray)) return true;
   if (!tc_trace(volume, &ray, &worker->spans)) return false;
   if (volume->traversal == TETCAST_TRAVERSAL_SHELL) cast_shell(volume, pieces, &ray, worker, light);
@@ -83,20 +83,23 @@ bool KERNEL(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, Tc
   const double columns = (double)(job->width * job->samples_x), rows = (double)(job->height * job->samples_y);
   for (int64_t y = y0; y < y1; ++y) {
     for (int64_t x = x0; x < x1; ++x) {
-      double sum[4] = {0, 0, 0, 0};
+      double sum[4] = {0, 0, 0, 0}, error = 0;
       for (int i = 0; i < samples; ++i) {
         const double column = (double)(x * job->samples_x + i % job->samples_x) + 0.5;
         const double row = (double)(y * job->samples_y + i / job->samples_x) + 0.5;
         double rgba[4];
+        const int64_t segments = worker->segments;
         TcLine line;
         TcLight light;
         tc_view_line(&job->view, 2 * column / columns - 1, 1 - 2 * row / rows, &line);
         if (!CAST(job->volume, job->pieces, &line, worker, &light)) return false;
         tc_light_end(&light, rgba);
+        error += tc_tolerance_bound(&worker->tolerance, &light, worker->segments - segments);
         for (int k = 0; k < 4; ++k) sum[k] += rgba[k];
       }
       for (int k = 0; k < 4; ++k) sum[k] /= samples;
-      tc_frame_store(job->frame, x, y, sum);
+      error = tc_frame_store(job->frame, x, y, sum, error / samples);
+      if (!(error <= worker->error)) worker->error = error;
     }
   }
   return true;

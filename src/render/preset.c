@@ -49,7 +49,7 @@ TetcastStatus tc_preset_extinction(TetcastContext *context, const TetcastVolume 
   status = tc_transfer_rescale(context, given, volume->value_exponent, 0, &transfer);
   tc_transfer_destroy(given);
   if (status) return status;
-  TcWorker worker = {.spans = {.context = context}};
+  TcWorker worker = {.spans = {.context = context}, .tolerance = tc_tolerance_begin(&transfer->pieces, 0)};
   double depths[3 * GRID * GRID];
   int count = 0;
   const bool ok = measure(volume, &transfer->pieces, &worker, depths, &count);

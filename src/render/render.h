@@ -5,7 +5,7 @@
 #include <tetcast/scene.h>
 
 #include "base/base.h"
-#include "optics/transfer.h"
+#include "optics/tolerance.h"
 #include "traverse/trace.h"
 #include "traverse/volume.h"
 
@@ -15,6 +15,7 @@ struct TetcastFrame {
   TetcastType type;
   void *pixels;
   void *memory; /* NULL when the pixels are borrowed */
+  void *error;  /* [height][width] of type, or NULL */
 };
 
 struct TetcastScene {
@@ -38,13 +39,16 @@ TetcastCamera tc_camera_default(const double bounds[6], double aspect);
 
 TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *desc, TetcastFrame **frame);
 void tc_frame_destroy(TetcastFrame *frame);
-void tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, const double rgba[4]);
+/* `error` is a bound on that of rgba. Returns one on that of the pixel, rounding to its type included. */
+double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, const double rgba[4], double error);
 
 /* What a worker keeps to itself. */
 typedef struct TcWorker {
   TcSpans spans;
   const struct TcSampler *sampler; /* NULL: exact */
+  TcTolerance tolerance;
   int64_t segments, lost;
+  double error; /* largest bound so far */
 } TcWorker;
 
 /* What a frame is made from; the same for all kernels. */

@@ -61,13 +61,13 @@ static void sample_grid(int samples, int *x, int *y) {
 }
 
 /* Renders with all that is needed at hand, and sums up what the workers counted. */
-static TetcastStatus run(TetcastContext *context, Render *render, const TcSampler *sampler, const TetcastProgress *progress,
+static TetcastStatus run(TetcastContext *context, Render *render, const TcWorker *start, const TetcastProgress *progress,
                          TetcastRenderStats *stats) {
   const int threads = tc_context_threads(context);
   if (!tc_allocate_array(context, (void **)&render->workers, threads, sizeof *render->workers, "workers")) {
     return TETCAST_ERROR_MEMORY;
   }
-  for (int i = 0; i < threads; ++i) render->workers[i] = (TcWorker){.spans = {.context = context}, .sampler = sampler};
+  for (int i = 0; i < threads; ++i) render->workers[i] = *start;
   render->tiles_x = (render->job.width + TILE - 1) / TILE;
   const int64_t tiles = render->tiles_x * ((render->job.height + TILE - 1) / TILE);
   TetcastStatus status = tc_parallel_for(context, tiles, 1, render_tiles, render, progress);
@@ -76,6 +76,7 @@ static TetcastStatus run(TetcastContext *context, Render *render, const TcSample
     if (worker->spans.out_of_memory) status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: hits of a ray");
     stats->segments += worker->segments;
     stats->lost += worker->lost;
+    stats->error = fmax(stats->error, worker->error);
     tc_spans_clear(&worker->spans);
   }
   tc_release(context, render->workers);
@@ -87,6 +88,7 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   TetcastContext *context = scene->context;
   const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
   Render render = {.kernel = exact ? tc_kernel_exact : tc_kernel_sampled};
+  TcWorker start = {.spans = {.context = context}};
   TcJob *job = &render.job;
   job->volume = scene->volume;
   job->width = frame->width;
@@ -104,10 +106,13 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   if (!status && !exact) status = tc_sampler_create(context, desc->integrator, desc->integrator_n, &sampler);
   if (!status) {
     job->pieces = &transfer->pieces;
-    status = run(context, &render, sampler, &desc->progress, &sum);
+    start.sampler = sampler;
+    start.tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);
+    status = run(context, &render, &start, &desc->progress, &sum);
   }
   tc_sampler_destroy(sampler);
   tc_transfer_destroy(transfer);
+  if (!exact) sum.error = NAN;
   if (!status && stats) *stats = sum;
   return status;
 }

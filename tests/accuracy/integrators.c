@@ -39,7 +39,7 @@ static double error_of(TetcastContext *context, int kind, TetcastIntegrator inte
   uint64_t seed = 17;
   for (int i = 0; i < 100; ++i) {
     const double from = 0.1 + 0.2 * uniform(&seed), to = 0.7 + 0.2 * uniform(&seed), length = 1 + uniform(&seed);
-    TcLight exact = tc_light_begin(), sampled = tc_light_begin();
+    TcLight exact = tc_light_begin(-1, TC_OPAQUE_DEPTH), sampled = tc_light_begin(-1, TC_OPAQUE_DEPTH);
     for (int j = 0; j < parts; ++j) {
       const double s0 = from + (to - from) * j / parts, s1 = from + (to - from) * (j + 1) / parts;
       tc_light_add(&exact, &transfer->pieces, length / parts, s0, s1);

@@ -145,8 +145,33 @@ static void reference(const Scene *scene, double rgba[4]) {
 
 /* ── the renderer ── */
 
+/* A picture of one pixel with each tolerance: red, green, blue, alpha, and the bound on their error. */
+enum { TOLERANCES = 5 };
+static const double tolerances[TOLERANCES] = {0, 1e-9, 1e-6, 1e-3, 0.1};
+
+static void pixels_of(TetcastContext *context, const TetcastVolume *volume, const TetcastTransferFunction *transfer,
+                      const TetcastCamera *camera, double pixels[TOLERANCES][5]) {
+  TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
+  frame_desc.width = frame_desc.height = 1;
+  frame_desc.channels = TETCAST_CHANNEL_ERROR;
+  TetcastFrame *frame = NULL;
+  TetcastScene *scene = NULL;
+  assert_int_equal(tetcast_frame_create(context, &frame_desc, &frame), TETCAST_OK);
+  assert_int_equal(tetcast_scene_create(context, volume, &scene), TETCAST_OK);
+  assert_int_equal(tetcast_scene_set_transfer_function(scene, transfer), TETCAST_OK);
+  for (int i = 0; i < TOLERANCES; ++i) {
+    TetcastRenderDesc desc = tetcast_render_desc_default();
+    desc.tolerance = tolerances[i];
+    assert_int_equal(tetcast_scene_render(scene, camera, &desc, frame, NULL), TETCAST_OK);
+    memcpy(pixels[i], tetcast_frame_pixels(frame), 4 * sizeof(double));
+    memcpy(&pixels[i][4], tetcast_frame_channel(frame, TETCAST_CHANNEL_ERROR), sizeof(double));
+  }
+  tetcast_scene_destroy(&scene);
+  tetcast_frame_destroy(&frame);
+}
+
 /* A bar of (cells × 1 × 1) cubes in six tetrahedra each, and its picture of one pixel, seen along it. */
-static void render(const Scene *scene, TetcastTraversal traversal, double rgba[4]) {
+static void render(const Scene *scene, TetcastTraversal traversal, double pixels[TOLERANCES][5]) {
   static const int order[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   Fixture fixture;
   assert_int_equal(fixture_begin(&fixture, 1, 0), TETCAST_OK);
@@ -185,9 +210,7 @@ static void render(const Scene *scene, TetcastTraversal traversal, double rgba[4
   camera.eye[0] = -scene->length;
   camera.eye[1] = camera.target[1] = 0.3125 * width;
   camera.eye[2] = camera.target[2] = 0.625 * width;
-  double *pixels = picture(fixture.context, volume, transfer, &camera, 1, 1, NULL);
-  memcpy(rgba, pixels, 4 * sizeof *rgba);
-  free(pixels);
+  pixels_of(fixture.context, volume, transfer, &camera, pixels);
   tetcast_transfer_function_destroy(&transfer);
   tetcast_volume_destroy(&volume);
   cube_destroy(&bar);
@@ -199,14 +222,18 @@ static void extreme_scenes(void **state) {
   double worst = 0;
   printf("%-38s %22s %10s %10s\n", "scene", "opacity", "walk", "faces");
   for (size_t i = 0; i < sizeof scenes / sizeof *scenes; ++i) {
-    double expected[4], error[2] = {0, 0}, pixel[4];
+    double expected[4], error[2] = {0, 0}, pixels[TOLERANCES][5];
     reference(&scenes[i], expected);
     for (int traversal = 0; traversal < 2; ++traversal) {
-      render(&scenes[i], traversal ? TETCAST_TRAVERSAL_FACES : TETCAST_TRAVERSAL_SHELL, pixel);
+      render(&scenes[i], traversal ? TETCAST_TRAVERSAL_FACES : TETCAST_TRAVERSAL_SHELL, pixels);
       for (int k = 0; k < 4; ++k) {
-        assert_true(pixel[k] >= 0 && pixel[k] <= 1);
+        for (int j = 0; j < TOLERANCES; ++j) {
+          assert_true(pixels[j][k] >= 0 && pixels[j][k] <= 1);
+          assert_true(fabs(pixels[j][k] - expected[k]) <= pixels[j][4]);
+          assert_true(pixels[j][4] <= fmax(tolerances[j], 1e-12));
+        }
         /* absolute in [0, 1], relative where everything is thin */
-        error[traversal] = fmax(error[traversal], fabs(pixel[k] - expected[k]) / fmin(1, fmax(expected[3], DBL_MIN)));
+        error[traversal] = fmax(error[traversal], fabs(pixels[0][k] - expected[k]) / fmin(1, fmax(expected[3], DBL_MIN)));
       }
       worst = fmax(worst, error[traversal]);
     }

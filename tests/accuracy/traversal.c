@@ -121,6 +121,7 @@ static void caster_begin(Caster *caster, const Soup *soup) {
   tetcast_field_destroy(&field);
   caster->gray = gray_of(caster->fixture.context, 1e-9); /* thin: nothing ends early, the depth is the length */
   caster->worker.spans.context = caster->fixture.context;
+  caster->worker.tolerance = tc_tolerance_begin(&caster->gray->pieces, 0);
 }
 
 static void caster_end(Caster *caster) {

@@ -28,6 +28,7 @@ extern "C" {
 #include <OpenImageIO/imageio.h>
 
 #include <tetcast/image.h>
+#include <tetcast/tetcast.h>
 
 namespace fs = std::filesystem;
 using OIIO::TypeDesc;
@@ -188,6 +189,105 @@ static void compare(const Picture &picture, const std::vector<double> &pixels, c
         fail_msg("pixel %zu channel %d: %.17g instead of %.17g", i, c, got, expected);
     }
   }
+}
+
+// A picture of one tetrahedron with an error channel.
+static TetcastFrame *render_with_error(TetcastType type, int64_t width, int64_t height) {
+  static const double vertices[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, values[4] = {0, 1, 2, 3};
+  static const int32_t cell[4] = {0, 1, 2, 3};
+  static const double color[4] = {0, 1, 0.5, 0.25}, extinction[2][2] = {{0, 0}, {3, 2}};
+  TetcastMeshDesc mesh_desc = tetcast_mesh_desc_default();
+  mesh_desc.vertices.data = vertices;
+  mesh_desc.vertices.type = TETCAST_TYPE_FLOAT64;
+  mesh_desc.vertices.count = 4;
+  mesh_desc.tetrahedra.data = cell;
+  mesh_desc.tetrahedra.type = TETCAST_TYPE_INT32;
+  mesh_desc.tetrahedra.count = 1;
+  TetcastFieldDesc field_desc = tetcast_field_desc_default();
+  field_desc.values.data = values;
+  field_desc.values.type = TETCAST_TYPE_FLOAT64;
+  field_desc.values.count = 4;
+  TetcastTransferFunctionDesc transfer_desc = tetcast_transfer_function_desc_default();
+  transfer_desc.color = color;
+  transfer_desc.color_count = 1;
+  transfer_desc.extinction = extinction[0];
+  transfer_desc.extinction_count = 2;
+  TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
+  frame_desc.width = width;
+  frame_desc.height = height;
+  frame_desc.type = type;
+  frame_desc.channels = TETCAST_CHANNEL_ERROR;
+  TetcastRenderDesc desc = tetcast_render_desc_default();
+  desc.tolerance = 1e-3;
+  TetcastMesh *mesh = nullptr;
+  TetcastField *field = nullptr;
+  TetcastVolume *volume = nullptr;
+  TetcastTransferFunction *transfer = nullptr;
+  TetcastScene *scene = nullptr;
+  TetcastFrame *frame = nullptr;
+  assert_int_equal(tetcast_mesh_create(context, &mesh_desc, &mesh), TETCAST_OK);
+  assert_int_equal(tetcast_field_create(context, &field_desc, &field), TETCAST_OK);
+  assert_int_equal(tetcast_volume_create(context, mesh, nullptr, &volume), TETCAST_OK);
+  assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
+  assert_int_equal(tetcast_transfer_function_create(context, &transfer_desc, &transfer), TETCAST_OK);
+  assert_int_equal(tetcast_scene_create(context, volume, &scene), TETCAST_OK);
+  assert_int_equal(tetcast_scene_set_transfer_function(scene, transfer), TETCAST_OK);
+  assert_int_equal(tetcast_frame_create(context, &frame_desc, &frame), TETCAST_OK);
+  const double bounds[6] = {0, 1, 0, 1, 0, 1};
+  const TetcastCamera camera = tetcast_camera_default(bounds, double(width) / double(height));
+  assert_int_equal(tetcast_scene_render(scene, &camera, &desc, frame, nullptr), TETCAST_OK);
+  tetcast_scene_destroy(&scene);
+  tetcast_transfer_function_destroy(&transfer);
+  tetcast_volume_destroy(&volume);
+  tetcast_field_destroy(&field);
+  tetcast_mesh_destroy(&mesh);
+  return frame;
+}
+
+static void the_error_is_a_fifth_channel(void **) {
+  clear_folder();
+  const int64_t width = 19, height = 83; // more rows than are written at a time
+  const struct {
+    const char *name;
+    TetcastPixelType type;
+    TypeDesc::BASETYPE stored; // UNKNOWN: refused
+  } cases[] = {{"a.exr", TETCAST_PIXEL_DEFAULT, TypeDesc::FLOAT}, {"b.exr", TETCAST_PIXEL_FLOAT, TypeDesc::FLOAT},
+               {"a.tif", TETCAST_PIXEL_DEFAULT, TypeDesc::FLOAT}, {"b.tif", TETCAST_PIXEL_DOUBLE, TypeDesc::DOUBLE},
+               {"c.tif", TETCAST_PIXEL_HALF, TypeDesc::UNKNOWN},  {"c.png", TETCAST_PIXEL_DEFAULT, TypeDesc::UNKNOWN},
+               {"d.tif", TETCAST_PIXEL_UINT8, TypeDesc::UNKNOWN}, {"c.hdr", TETCAST_PIXEL_DEFAULT, TypeDesc::UNKNOWN}};
+  for (const TetcastType type : {TETCAST_TYPE_FLOAT32, TETCAST_TYPE_FLOAT64}) {
+    TetcastFrame *frame = render_with_error(type, width, height);
+    const void *error = tetcast_frame_channel(frame, TETCAST_CHANNEL_ERROR);
+    for (const auto &item : cases) {
+      const fs::path path = folder / item.name;
+      TetcastImageDesc desc = tetcast_image_desc_default();
+      desc.pixel_type = item.type;
+      const TetcastStatus status = tetcast_image_write(context, path.c_str(), frame, &desc);
+      assert_int_equal(status, item.stored == TypeDesc::UNKNOWN ? TETCAST_ERROR_ARGUMENT : TETCAST_OK);
+      assert_int_equal(fs::exists(path), status == TETCAST_OK);
+      if (status != TETCAST_OK)
+        continue;
+      const Picture picture = read_back(path);
+      assert_int_equal(picture.spec.nchannels, 5);
+      if (path.extension() == ".exr") // TIFF keeps no names
+        assert_string_equal(picture.spec.channelnames[4].c_str(), "error");
+      assert_int_equal(picture.spec.channelformat(4).basetype, item.stored);
+      double largest = 0;
+      for (size_t i = 0; i < size_t(width * height); i++) {
+        const double value = type == TETCAST_TYPE_FLOAT64 ? static_cast<const double *>(error)[i]
+                                                          : double(static_cast<const float *>(error)[i]);
+        const bool narrow = item.stored == TypeDesc::FLOAT;
+        assert_true(picture.values[5 * i + 4] == (narrow ? double(float(value)) : value));
+        const double *pixel = static_cast<const double *>(tetcast_frame_pixels(frame)) + 4 * i;
+        if (type == TETCAST_TYPE_FLOAT64 && !narrow)
+          assert_memory_equal(&picture.values[5 * i], pixel, 4 * sizeof *pixel);
+        largest = std::max(largest, value);
+      }
+      assert_true(largest > 0 && largest <= 1e-3);
+    }
+    tetcast_frame_destroy(&frame);
+  }
+  clear_folder();
 }
 
 static void formats_hold_what_they_should(void **) {
@@ -472,7 +572,7 @@ static void full_disk_leaves_the_old_file_and_no_word_on_stderr(void **) {
 
 int main() {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(formats_hold_what_they_should),
+      cmocka_unit_test(formats_hold_what_they_should), cmocka_unit_test(the_error_is_a_fifth_channel),
       cmocka_unit_test(jpeg_is_near_a_smooth_picture),
       cmocka_unit_test(doubles_come_back_bit_for_bit),
       cmocka_unit_test(tiff_states_how_alpha_is_meant),

@@ -77,6 +77,27 @@ static void thin_segments_keep_relative_accuracy(void **state) {
   }
 }
 
+/* What the short polynomials leave out is below T⁵/120, rounding apart. */
+static void thin_polynomials_keep_their_bound(void **state) {
+  (void)state;
+  double worst = 0;
+  for (double t = 1e-12; t <= 0.5; t *= 1.01) {
+    for (int i = 0; i <= 20; ++i) {
+      const double a = 2 * t * i / 20, a1 = 2 * t - a;
+      const TcSegment exact = tc_segment(a, a1), thin = tc_segment_thin(a, a1);
+      const double bound = t * t * t * t * t / 120, rounding = 4e-15 * t;
+      const double off = fabs(thin.w0 - exact.w0) + fabs(thin.w1 - exact.w1);
+      assert_true(off <= bound + rounding);
+      assert_true(fabs(thin.alpha - exact.alpha) <= bound + rounding);
+      assert_true(fabs(thin.transmittance - exact.transmittance) <= bound + 3e-16);
+      assert_true(bound <= exact.alpha * t * t * t * t / 90);
+      assert_true(thin.w0 >= 0 && thin.w1 >= 0 && thin.depth == exact.depth);
+      if (t > 0.01) worst = fmax(worst, off / bound);
+    }
+  }
+  assert_true(worst > 0.5); /* the bound is not far off either */
+}
+
 static TcPieces pieces_of(Fixture *fixture, TetcastTransferFunction **transfer) {
   *transfer = transfer_of(fixture->context, 3);
   return (*transfer)->pieces;
@@ -91,7 +112,7 @@ static void cutting_changes_nothing(void **state) {
   const TcPieces pieces = pieces_of(&fixture, &transfer);
   for (int reverse = 0; reverse < 2; ++reverse) {
     const double from = reverse ? 1.1 : -0.1, to = reverse ? -0.1 : 1.1;
-    TcLight whole = tc_light_begin(), cut = tc_light_begin();
+    TcLight whole = tc_light_begin(-1, TC_OPAQUE_DEPTH), cut = tc_light_begin(-1, TC_OPAQUE_DEPTH);
     tc_light_add(&whole, &pieces, 0.7, from, to);
     double s = from;
     for (int i = 1; i <= 1000; ++i) {
@@ -117,7 +138,7 @@ static void many_segments_do_not_drift(void **state) {
   const double depth[] = {1e-15, 1e-3, 1.7, 20};
   for (int i = 0; i < 4; ++i) {
     TetcastTransferFunction *transfer = gray_of(fixture.context, depth[i]);
-    TcLight light = tc_light_begin();
+    TcLight light = tc_light_begin(-1, TC_OPAQUE_DEPTH);
     for (int j = 0; j < 100000; ++j) tc_light_add_constant(&light, &transfer->pieces, 1e-5, 0.5);
     double rgba[4];
     tc_light_end(&light, rgba);
@@ -131,7 +152,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(agrees_with_quadrature),        cmocka_unit_test(stays_in_range_at_extremes),
     cmocka_unit_test(thin_segments_keep_relative_accuracy), cmocka_unit_test(cutting_changes_nothing),
-    cmocka_unit_test(many_segments_do_not_drift),
+    cmocka_unit_test(many_segments_do_not_drift),    cmocka_unit_test(thin_polynomials_keep_their_bound),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,6 +29,7 @@ struct Pixels {
   const void *data;
   int64_t width, height, row_stride;
   bool is_double;
+  const void *error; // [height][width], or null
 };
 
 // One error, already sent to the context.
@@ -161,17 +162,33 @@ void integer_rows(const Pixels &pixels, int64_t begin, int64_t end, int channels
   }
 }
 
+// Rows [begin, end) with the error as a fifth channel.
+void five_channel_rows(const Pixels &pixels, int64_t begin, int64_t end, unsigned char *out) {
+  const size_t size = pixels.is_double ? 8 : 4;
+  for (int64_t y = begin; y < end; y++) {
+    const char *row = static_cast<const char *>(pixels.data) + y * pixels.row_stride;
+    const char *error = static_cast<const char *>(pixels.error) + size_t(y * pixels.width) * size;
+    for (size_t x = 0; x < size_t(pixels.width); x++, out += 5 * size) {
+      std::memcpy(out, row + x * 4 * size, 4 * size);
+      std::memcpy(out + 4 * size, error + x * size, size);
+    }
+  }
+}
+
 bool write_rows(ImageOutput &output, const Pixels &pixels, const double background[4]) {
   const ImageSpec &spec = output.spec();
   const bool floating = is_float(spec.format);
   const TypeDesc frame_type = pixels.is_double ? TypeDesc::DOUBLE : TypeDesc::FLOAT;
   std::vector<unsigned char> batch;
-  if (!floating)
-    batch.resize(size_t(pixels.width) * size_t(std::min(batch_rows, pixels.height)) * spec.pixel_bytes());
+  const size_t pixel_bytes = pixels.error ? 5 * frame_type.size() : floating ? 0 : spec.pixel_bytes();
+  batch.resize(size_t(pixels.width) * size_t(std::min(batch_rows, pixels.height)) * pixel_bytes);
   for (int64_t begin = 0; begin < pixels.height; begin += batch_rows) {
     const int64_t end = std::min(begin + batch_rows, pixels.height);
     bool done;
-    if (floating) {
+    if (pixels.error) {
+      five_channel_rows(pixels, begin, end, batch.data());
+      done = output.write_scanlines(int(begin), int(end), 0, frame_type, batch.data());
+    } else if (floating) {
       const char *row = static_cast<const char *>(pixels.data) + begin * pixels.row_stride;
       done = output.write_scanlines(int(begin), int(end), 0, frame_type, row, OIIO::stride_t(4 * frame_type.size()),
                                     pixels.row_stride);
@@ -192,6 +209,15 @@ ImageSpec picture_spec(const ImageOutput &output, const Pixels &pixels, TypeDesc
   const bool alpha = output.supports("alpha") && (is_float(type) || !opaque);
   ImageSpec spec(int(pixels.width), int(pixels.height), alpha ? 4 : 3, type);
   spec.attribute("Software", "tetcast " TETCAST_VERSION_STRING);
+  if (pixels.error) {
+    spec.nchannels = 5;
+    spec.default_channel_names(); // R, G, B, A and one more
+    spec.channelnames[4] = "error";
+    if (type == TypeDesc::HALF) { // which would make 0 of small bounds
+      spec.channelformats.assign(5, type);
+      spec.channelformats[4] = TypeDesc::FLOAT;
+    }
+  }
   if (alpha && !is_float(type))
     spec.attribute("oiio:UnassociatedAlpha", 1);
   const std::string format = output.format_name();
@@ -224,6 +250,11 @@ void write_picture(TetcastContext *context, const char *path, const Pixels &pixe
     fail(context, TETCAST_ERROR_IO, path, error_text(error));
   proxy = std::make_unique<tetcast::CheckedProxy>(file.file(), file.temporary());
   const TypeDesc type = requested_type(desc.pixel_type, format);
+  if (pixels.error && (!is_float(type) || !output->supports("nchannels")))
+    fail(context, TETCAST_ERROR_ARGUMENT, path,
+         "the frame has an error channel, which only floating-point pixels in .exr and .tif can hold");
+  if (pixels.error && type == TypeDesc::HALF && !output->supports("channelformats"))
+    fail(context, TETCAST_ERROR_ARGUMENT, path, "the error channel does not fit into pixels of type half in this format");
   const bool opaque = desc.background[3] >= 1;
   ImageSpec spec = picture_spec(*output, pixels, type, opaque);
   void *pointer = static_cast<OIIO::Filesystem::IOProxy *>(proxy.get());
@@ -300,7 +331,8 @@ TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, con
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
                                  "tetcast_image_write: context, path and frame are needed");
   const Pixels pixels = {tetcast_frame_pixels(frame), tetcast_frame_width(frame), tetcast_frame_height(frame),
-                         tetcast_frame_row_stride(frame), tetcast_frame_type(frame) == TETCAST_TYPE_FLOAT64};
+                         tetcast_frame_row_stride(frame), tetcast_frame_type(frame) == TETCAST_TYPE_FLOAT64,
+                         tetcast_frame_channel(frame, TETCAST_CHANNEL_ERROR)};
   return guarded(context, path, pixels, desc, true);
 }
 
@@ -308,5 +340,5 @@ TetcastStatus tetcast_image_check(TetcastContext *context, const char *path, con
   if (!context || !path)
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "tetcast_image_check: context and path are needed");
   static const float pixel[4] = {0, 0, 0, 0};
-  return guarded(context, path, {pixel, 1, 1, sizeof pixel, false}, desc, false);
+  return guarded(context, path, {pixel, 1, 1, sizeof pixel, false, nullptr}, desc, false);
 }
