@@ -356,6 +356,7 @@ TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamer
     return ARGUMENT(context, "an integrator with n = %d: must be in [%d, %d]", desc->integrator_n, least[desc->integrator],
                     most[desc->integrator]);
   }
+  if ((unsigned)desc->isa > TETCAST_ISA_AVX512) return ARGUMENT(context, "unknown instruction set %d", (int)desc->isa);
   if (!(desc->tolerance >= 0) || !isfinite(desc->tolerance)) {
     return ARGUMENT(context, "a tolerance of %g: must be 0 or a positive number", desc->tolerance);
   }

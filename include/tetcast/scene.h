@@ -39,11 +39,21 @@ typedef enum TetcastIntegrator {
 
 #define TETCAST_MAX_GAUSS 16
 
+/* Instruction sets that there are kernels for, from the slowest to the fastest. */
+typedef enum TetcastIsa {
+  TETCAST_ISA_AUTO = 0, /* the fastest that the processor has */
+  TETCAST_ISA_SCALAR,   /* one ray at a time: what the others are tested against */
+  TETCAST_ISA_BASELINE, /* packets of rays; SSE2 on x86, NEON on ARM */
+  TETCAST_ISA_AVX2,     /* with FMA */
+  TETCAST_ISA_AVX512    /* F, VL, DQ */
+} TetcastIsa;
+
 typedef struct TetcastRenderDesc {
   uint32_t cookie;
   TetcastIntegrator integrator; /* default: exact */
   int integrator_n;             /* see there; at most 2^20; default 1; not used by exact */
   int samples;              /* rays per pixel in [1, 2^16], a regular grid as near to square as the number allows; default 1: the centre */
+  TetcastIsa isa;   /* at most this one is used; default: auto. All give the same picture up to rounding */
   double tolerance; /* ≥ 0, finite; default 0: exact. Else, a picture sooner: none of a pixel's four channels is further than this from the
                      * exact picture's. Absolute, in the units of the channel (alpha: 1 is opaque). Only with the exact integrator. */
   TetcastProgress progress;

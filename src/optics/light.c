@@ -27,8 +27,20 @@ void tc_light_add_segment(TcLight *light, const TcSegment *segment, const double
   if (++light->block_length == BLOCK) end_block(light);
 }
 
-/* Piece with low ≤ s < high: at a knot, the later one. */
-static int64_t piece_above(const TcPieces *pieces, double s) {
+bool tc_light_opaque(TcLight *light, const TcPieces *pieces) {
+  const double depth = light->depth + light->block_depth;
+  if (depth <= light->opaque && depth <= TC_NEARLY_OPAQUE) return false;
+  light->stopped = depth > TC_NEARLY_OPAQUE;
+  const double left = light->transmittance * light->block_transmittance;
+  for (int k = 0; k < 3; ++k) {
+    const double color = light->color[k] + light->transmittance * light->block_color[k];
+    if (left * pieces->largest[k] > 0x1p-54 * color) light->stopped = false;
+  }
+  if (depth > light->opaque) light->stopped = true;
+  return light->stopped;
+}
+
+int64_t tc_piece_above(const TcPieces *pieces, double s) {
   int64_t low = 0, high = pieces->count;
   while (low < high) {
     const int64_t middle = (low + high) / 2;
@@ -38,8 +50,7 @@ static int64_t piece_above(const TcPieces *pieces, double s) {
   return low;
 }
 
-/* Piece with low < s ≤ high: where a scalar that falls from s finds itself. */
-static int64_t piece_below(const TcPieces *pieces, double s) {
+int64_t tc_piece_below(const TcPieces *pieces, double s) {
   int64_t low = 0, high = pieces->count;
   while (low < high) {
     const int64_t middle = (low + high) / 2;
@@ -59,7 +70,7 @@ static TcOptics optics_at(const TcPiece *piece, double s) {
 }
 
 TcOptics tc_pieces_at(const TcPieces *pieces, double s) {
-  const TcPiece *piece = &pieces->pieces[piece_above(pieces, s)];
+  const TcPiece *piece = &pieces->pieces[tc_piece_above(pieces, s)];
   return piece->constant ? piece->at_low : optics_at(piece, s);
 }
 
@@ -88,7 +99,7 @@ static inline void split(TcLight *light, const TcPieces *pieces, double length, 
                          const void *data) {
   const double whole = fabs(s1 - s0);
   if (s0 <= s1) {
-    const TcPiece *piece = &pieces->pieces[piece_above(pieces, s0)];
+    const TcPiece *piece = &pieces->pieces[tc_piece_above(pieces, s0)];
     if (piece->high >= s1) {
       add(data, light, piece, length, s0, s1);
       return;
@@ -99,7 +110,7 @@ static inline void split(TcLight *light, const TcPieces *pieces, double length, 
       s0 = end;
     }
   } else {
-    const TcPiece *piece = &pieces->pieces[piece_below(pieces, s0)];
+    const TcPiece *piece = &pieces->pieces[tc_piece_below(pieces, s0)];
     if (piece->low <= s1) {
       add(data, light, piece, length, s0, s1);
       return;
@@ -117,7 +128,7 @@ void tc_light_add(TcLight *light, const TcPieces *pieces, double length, double 
 }
 
 void tc_light_add_constant(TcLight *light, const TcPieces *pieces, double length, double s) {
-  add_exact(NULL, light, &pieces->pieces[piece_above(pieces, s)], length, s, s);
+  add_exact(NULL, light, &pieces->pieces[tc_piece_above(pieces, s)], length, s, s);
 }
 
 typedef struct Ends {

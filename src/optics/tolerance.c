@@ -8,18 +8,8 @@
  * 4 · 64; sums over blocks, of which there are segments / 64, 2 each, and once more through the depth. */
 static double rounding(int64_t segments) { return (512 + (double)segments / 16) * 0x1p-53; }
 
-static double largest_color(const TcPieces *pieces) {
-  double largest = 0;
-  for (int64_t i = 0; i <= pieces->count; ++i) {
-    const TcPiece *piece = &pieces->pieces[i];
-    if (piece->at_low.extinction == 0 && piece->at_high.extinction == 0) continue;
-    for (int k = 0; k < 3; ++k) largest = fmax(largest, fmax(piece->at_low.color[k], piece->at_high.color[k]));
-  }
-  return largest;
-}
-
 TcTolerance tc_tolerance_begin(const TcPieces *pieces, double tolerance) {
-  TcTolerance result = {.thin = -1, .opaque = TC_OPAQUE_DEPTH, .color = largest_color(pieces)};
+  TcTolerance result = {.thin = -1, .opaque = TC_OPAQUE_DEPTH, .color = fmax(pieces->largest[0], fmax(pieces->largest[1], pieces->largest[2]))};
   const double largest = fmax(1, result.color), spare = tolerance - rounding(1 << 14) * largest;
   if (!(spare > 0)) return result; /* rounding alone may take that much */
   /* tc_segment_thin() is off by less than T⁴/90 relative to the opacity, for T ≤ 1/2. */

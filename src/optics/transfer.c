@@ -89,6 +89,22 @@ static int64_t merge_knots(const Knots *a, const Knots *b, double *merged) {
   return n;
 }
 
+/* What follows from the pieces as they are. */
+static void look_at_pieces(TetcastTransferFunction *transfer) {
+  TcPieces *pieces = &transfer->pieces;
+  memset(pieces->largest, 0, sizeof pieces->largest);
+  pieces->narrow = false;
+  for (int64_t i = 0; i <= pieces->count; ++i) {
+    TcPiece *piece = &transfer->piece[i];
+    piece->inverse = piece->constant ? 0 : 1 / (piece->high - piece->low);
+    if (!isfinite(piece->inverse)) pieces->narrow = true;
+    if (piece->at_low.extinction == 0 && piece->at_high.extinction == 0) continue;
+    for (int k = 0; k < 3; ++k) {
+      pieces->largest[k] = fmax(pieces->largest[k], fmax(piece->at_low.color[k], piece->at_high.color[k]));
+    }
+  }
+}
+
 static void make_pieces(TetcastTransferFunction *transfer) {
   const Knots color = {transfer->color, transfer->color_count, 4};
   const Knots extinction = {transfer->extinction, transfer->extinction_count, 2};
@@ -106,7 +122,8 @@ static void make_pieces(TetcastTransferFunction *transfer) {
     piece->constant = a->extinction == b->extinction && a->color[0] == b->color[0] && a->color[1] == b->color[1] &&
                       a->color[2] == b->color[2];
   }
-  transfer->pieces = (TcPieces){n, transfer->knots, transfer->piece};
+  transfer->pieces = (TcPieces){.count = n, .knots = transfer->knots, .pieces = transfer->piece};
+  look_at_pieces(transfer);
 }
 
 static double extinction_of(const TetcastTransferFunctionDesc *desc, double opacity) {
@@ -194,6 +211,7 @@ TetcastStatus tc_transfer_rescale(TetcastContext *context, const TetcastTransfer
     if (i > 0) piece->low = copy->knots[i - 1];
     if (i > 0) copy->piece[i - 1].high = copy->knots[i - 1];
   }
+  look_at_pieces(copy);
   return TETCAST_OK;
 }
 

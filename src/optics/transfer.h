@@ -16,6 +16,7 @@ typedef struct TcOptics {
 typedef struct TcPiece {
   double low, high; /* scalars at its ends; the outermost pieces are constant and end at ∓infinity */
   TcOptics at_low, at_high;
+  double inverse; /* 1 / (high − low); 0 for a constant piece */
   bool constant;
 } TcPiece;
 
@@ -24,6 +25,8 @@ typedef struct TcPieces {
   int64_t count;
   const double *knots; /* [count], ascending */
   const TcPiece *pieces;
+  double largest[3]; /* of each colour component, where there is any extinction */
+  bool narrow;       /* a piece is so narrow that `inverse` overflows */
 } TcPieces;
 
 struct TetcastTransferFunction {
@@ -64,15 +67,21 @@ typedef struct TcLight {
 /* Optical depth beyond which e^−τ is zero in double precision: what lies behind can't change a bit of the colour. */
 #define TC_OPAQUE_DEPTH 746.0
 
+/* Depth from which 1 − e^−τ is 1 in double precision. */
+#define TC_NEARLY_OPAQUE 37.5
+
 /* With a tolerance's limits; exact: −1, TC_OPAQUE_DEPTH. */
 static inline TcLight tc_light_begin(double thin, double opaque) {
   return (TcLight){.transmittance = 1, .block_transmittance = 1, .thin = thin, .opaque = opaque};
 }
 
-/* Whether the light is complete; notes it. */
-static inline bool tc_light_opaque(TcLight *light) {
-  return light->stopped = light->depth + light->block_depth > light->opaque;
-}
+/* Whether the light is complete: beyond light->opaque, or so deep that what is left changes no channel by half an ulp. Notes it. */
+bool tc_light_opaque(TcLight *light, const TcPieces *pieces);
+
+/* Piece with low ≤ s < high: at a knot, the later one. */
+int64_t tc_piece_above(const TcPieces *pieces, double s);
+/* Piece with low < s ≤ high: where a scalar that falls from s finds itself. */
+int64_t tc_piece_below(const TcPieces *pieces, double s);
 
 /* Adds what a segment of length `length` > 0 with scalars s0 → s1 (finite, linear in between) emits and absorbs. */
 void tc_light_add(TcLight *light, const TcPieces *pieces, double length, double s0, double s1);

@@ -37,7 +37,7 @@ static void add_segment(const TetcastVolume *volume, const TcPieces *pieces, uin
 
 /* Each path once, from the end that comes first. */
 static void cast_shell(const TetcastVolume *volume, const TcPieces *pieces, const TcRay *ray, TcWorker *worker, TcLight *light) {
-  TcSpans *faces = &worker->spans;
+  TcSpans *faces = worker->spans;
   for (int64_t i = 0; i < faces->count; ++i) faces->data[i].done = false;
   for (int64_t i = 0; i < faces->count; ++i) {
     if (faces->data[i].done) continue;
@@ -52,7 +52,7 @@ static void cast_shell(const TetcastVolume *volume, const TcPieces *pieces, cons
         return;
       }
       add_segment(volume, pieces, cell, z, walk.z, s, walk.s, &seen, worker, light);
-      if (tc_light_opaque(light)) return;
+      if (tc_light_opaque(light, pieces)) return;
     } while (!(walk.cell & TC_SHELL));
     for (int64_t j = i + 1; j < faces->count; ++j) {
       if (faces->data[j].id == (walk.cell & ~TC_SHELL)) faces->data[j].done = true;
@@ -61,8 +61,8 @@ static void cast_shell(const TetcastVolume *volume, const TcPieces *pieces, cons
 }
 
 static void cast_faces(const TetcastVolume *volume, const TcPieces *pieces, const TcRay *ray, TcWorker *worker, TcLight *light) {
-  for (int64_t i = 0; i < worker->spans.count && !tc_light_opaque(light); ++i) {
-    const TcSpan *span = &worker->spans.data[i];
+  for (int64_t i = 0; i < worker->spans->count && !tc_light_opaque(light, pieces); ++i) {
+    const TcSpan *span = &worker->spans->data[i];
     double seen = ray->near > span->begin ? ray->near : span->begin;
     add_segment(volume, pieces, span->id, span->begin, span->end, span->s0, span->s1, &seen, worker, light);
   }
@@ -72,7 +72,7 @@ bool CAST(const TetcastVolume *volume, const TcPieces *pieces, const TcLine *lin
   TcRay ray;
   *light = tc_light_begin(worker->tolerance.thin, worker->tolerance.opaque);
   if (!tc_ray_begin(volume, line, &ray)) return true;
-  if (!tc_trace(volume, &ray, &worker->spans)) return false;
+  if (!tc_trace(volume, &ray, worker->spans)) return false;
   if (volume->traversal == TETCAST_TRAVERSAL_SHELL) cast_shell(volume, pieces, &ray, worker, light);
   else cast_faces(volume, pieces, &ray, worker, light);
   return true;

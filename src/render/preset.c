@@ -49,11 +49,11 @@ TetcastStatus tc_preset_extinction(TetcastContext *context, const TetcastVolume 
   status = tc_transfer_rescale(context, given, volume->value_exponent, 0, &transfer);
   tc_transfer_destroy(given);
   if (status) return status;
-  TcWorker worker = {.spans = {.context = context}, .tolerance = tc_tolerance_begin(&transfer->pieces, 0)};
+  TcWorker worker = {.spans = {{.context = context}}, .tolerance = tc_tolerance_begin(&transfer->pieces, 0)};
   double depths[3 * GRID * GRID];
   int count = 0;
   const bool ok = measure(volume, &transfer->pieces, &worker, depths, &count);
-  tc_spans_clear(&worker.spans);
+  tc_spans_clear(&worker.spans[0]);
   tc_transfer_destroy(transfer);
   if (!ok) return tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: hits of a ray");
 

@@ -42,9 +42,11 @@ void tc_frame_destroy(TetcastFrame *frame);
 /* `error` is a bound on that of rgba. Returns one on that of the pixel, rounding to its type included. */
 double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, const double rgba[4], double error);
 
+enum { TC_PACKET = 8 }; /* rays, at most */
+
 /* What a worker keeps to itself. */
 typedef struct TcWorker {
-  TcSpans spans;
+  TcSpans spans[TC_PACKET]; /* of the rays of a packet; the scalar kernel uses the first */
   const struct TcSampler *sampler; /* NULL: exact */
   TcTolerance tolerance;
   int64_t segments, lost;
@@ -65,6 +67,7 @@ typedef struct TcJob {
 typedef bool TcKernel(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker);
 
 TcKernel tc_kernel_exact, tc_kernel_sampled;
+TcKernel tc_kernel_baseline, tc_kernel_avx2, tc_kernel_avx512; /* exact, by packets (packet_tmpl.h); the latter where the target has them */
 
 /* The light of one ray: the slow and simple way, in which a kernel may fall back on and against which it is tested. */
 typedef bool TcCast(const TetcastVolume *volume, const TcPieces *pieces, const TcLine *line, TcWorker *worker, TcLight *light);

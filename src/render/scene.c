@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/cpu.h"
 #include "base/parallel.h"
 #include "optics/sampled.h"
 #include "render/render.h"
@@ -60,6 +61,29 @@ static void sample_grid(int samples, int *x, int *y) {
   *x = samples / *y;
 }
 
+/* The widest kernel that this processor runs, that is allowed and that can do the job. */
+static TcKernel *choose_kernel(const TcJob *job, TetcastIsa most, const char **name) {
+  static const struct {
+    TetcastIsa isa;
+    const char *name;
+    TcKernel *kernel;
+  } kernels[] = {
+#ifdef TC_HAVE_X86
+    {TETCAST_ISA_AVX512, "avx512", tc_kernel_avx512},
+    {TETCAST_ISA_AVX2, "avx2", tc_kernel_avx2},
+#endif
+    {TETCAST_ISA_BASELINE, "baseline", tc_kernel_baseline},
+  };
+  const bool packets = job->volume->traversal == TETCAST_TRAVERSAL_SHELL && !job->pieces->narrow;
+  for (size_t i = 0; packets && i < sizeof kernels / sizeof *kernels; ++i) {
+    if ((most != TETCAST_ISA_AUTO && kernels[i].isa > most) || !tc_cpu_has(kernels[i].isa)) continue;
+    *name = kernels[i].name;
+    return kernels[i].kernel;
+  }
+  *name = "scalar";
+  return tc_kernel_exact;
+}
+
 /* Renders with all that is needed at hand, and sums up what the workers counted. */
 static TetcastStatus run(TetcastContext *context, Render *render, const TcWorker *start, const TetcastProgress *progress,
                          TetcastRenderStats *stats) {
@@ -73,11 +97,13 @@ static TetcastStatus run(TetcastContext *context, Render *render, const TcWorker
   TetcastStatus status = tc_parallel_for(context, tiles, 1, render_tiles, render, progress);
   for (int i = 0; i < threads; ++i) {
     TcWorker *worker = &render->workers[i];
-    if (worker->spans.out_of_memory) status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: hits of a ray");
     stats->segments += worker->segments;
     stats->lost += worker->lost;
     stats->error = fmax(stats->error, worker->error);
-    tc_spans_clear(&worker->spans);
+    for (int j = 0; j < TC_PACKET; ++j) {
+      if (worker->spans[j].out_of_memory) status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: hits of a ray");
+      tc_spans_clear(&worker->spans[j]);
+    }
   }
   tc_release(context, render->workers);
   return status;
@@ -87,8 +113,9 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
                               TetcastFrame *frame, TetcastRenderStats *stats) {
   TetcastContext *context = scene->context;
   const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
-  Render render = {.kernel = exact ? tc_kernel_exact : tc_kernel_sampled};
-  TcWorker start = {.spans = {.context = context}};
+  Render render = {.kernel = tc_kernel_sampled};
+  TcWorker start = {.sampler = NULL};
+  for (int i = 0; i < TC_PACKET; ++i) start.spans[i].context = context;
   TcJob *job = &render.job;
   job->volume = scene->volume;
   job->width = frame->width;
@@ -108,6 +135,7 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
     job->pieces = &transfer->pieces;
     start.sampler = sampler;
     start.tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);
+    if (exact) render.kernel = choose_kernel(job, desc->isa, &sum.isa);
     status = run(context, &render, &start, &desc->progress, &sum);
   }
   tc_sampler_destroy(sampler);

@@ -36,6 +36,7 @@ typedef struct Query {
   struct RTCIntersectContext context;
 #endif
   TcCandidateFunction *candidate;
+  TcPacketCandidateFunction *packet_candidate; /* instead, for packets */
   void *query;
 } Query;
 
@@ -61,9 +62,19 @@ static void bounds_function(const struct RTCBoundsFunctionArguments *arguments) 
 
 /* Hands the candidate on and never accepts a hit, so that Embree goes on to the next. */
 static void intersect_function(const struct RTCIntersectFunctionNArguments *arguments) {
-  if (!arguments->valid[0]) return;
   const Query *query = (const Query *)(const void *)arguments->context;
-  query->candidate(query->query, arguments->primID);
+  if (query->candidate) {
+    if (arguments->valid[0]) query->candidate(query->query, arguments->primID);
+    return;
+  }
+  /* A ray's id is its lane, however many of a packet Embree hands on together. It is the eleventh of a packet's arrays: what
+   * RTCRayN_id() says, which is there in C++ only. */
+  const unsigned *id = (const unsigned *)(const void *)arguments->rayhit + 10 * arguments->N;
+  unsigned lanes = 0;
+  for (unsigned i = 0; i < arguments->N; ++i) {
+    if (arguments->valid[i]) lanes |= 1U << id[i];
+  }
+  query->packet_candidate(query->query, arguments->primID, lanes);
 }
 
 static bool memory_monitor(void *user, ssize_t bytes, bool post) {
@@ -169,4 +180,48 @@ void tc_embree_query(const TcEmbree *embree, const double from_center[3], const 
   rtcInitIntersectContext(&query.context);
   rtcIntersect1(embree->scene, &query.context, &ray);
 #endif
+}
+
+#define FILL(r, i)                                                                                      \
+  do {                                                                                                  \
+    double p[3], d[3], along = 0;                                                                       \
+    for (int k = 0; k < 3; ++k) {                                                                       \
+      d[k] = direction[k * width + (i)];                                                                \
+      p[k] = from_center[k * width + (i)] * embree->inverse_radius;                                     \
+      along += p[k] * d[k];                                                                             \
+    }                                                                                                   \
+    (r).ray.org_x[i] = (float)(p[0] - (along + 2) * d[0]), (r).ray.dir_x[i] = (float)d[0];          \
+    (r).ray.org_y[i] = (float)(p[1] - (along + 2) * d[1]), (r).ray.dir_y[i] = (float)d[1];          \
+    (r).ray.org_z[i] = (float)(p[2] - (along + 2) * d[2]), (r).ray.dir_z[i] = (float)d[2];          \
+    (r).ray.tnear[i] = 0, (r).ray.tfar[i] = 4, (r).ray.time[i] = 0;                               \
+    (r).ray.mask[i] = UINT32_MAX, (r).ray.id[i] = (unsigned)(i), (r).ray.flags[i] = 0;            \
+    (r).hit.geomID[i] = (r).hit.primID[i] = (r).hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;       \
+    valid[i] = lanes >> (i) & 1 ? -1 : 0;                                                               \
+  } while (0)
+
+void tc_embree_query_packet(const TcEmbree *embree, int width, unsigned lanes, const double *from_center, const double *direction,
+                            TcPacketCandidateFunction *candidate, void *user) {
+  Query query = {.packet_candidate = candidate, .query = user};
+  _Alignas(64) int valid[8];
+#if RTC_VERSION_MAJOR >= 4
+  rtcInitRayQueryContext(&query.context);
+  struct RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  arguments.context = &query.context;
+#define INTERSECT(function, rays) function(valid, embree->scene, rays, &arguments)
+#else
+  rtcInitIntersectContext(&query.context);
+  query.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+#define INTERSECT(function, rays) function(valid, embree->scene, &query.context, rays)
+#endif
+  if (width == 8) {
+    struct RTCRayHit8 rays;
+    for (int i = 0; i < 8; ++i) FILL(rays, i);
+    INTERSECT(rtcIntersect8, &rays);
+  } else {
+    struct RTCRayHit4 rays;
+    for (int i = 0; i < 4; ++i) FILL(rays, i);
+    INTERSECT(rtcIntersect4, &rays);
+  }
 }

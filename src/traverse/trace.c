@@ -10,7 +10,7 @@ typedef struct Query {
   TcSpans *spans;
 } Query;
 
-static void append(TcSpans *spans, TcSpan span) {
+void tc_spans_append(TcSpans *spans, TcSpan span) {
   if (spans->count == spans->capacity) {
     const int64_t capacity = spans->capacity ? 2 * spans->capacity : 64;
     TcSpan *data = tc_allocate(spans->context, capacity, sizeof *data);
@@ -42,7 +42,7 @@ static void shell_candidate(void *user, uint32_t i) {
   TcSpan span = {.id = i};
   if (!crosses(&p[0], &p[1], &p[2], &span.begin, &span.s0)) return;
   span.end = span.begin;
-  append(query->spans, span);
+  tc_spans_append(query->spans, span);
 }
 
 /* A ray crosses none or exactly two of a cell's faces. */
@@ -58,7 +58,7 @@ static void cell_candidate(void *user, uint32_t i) {
   }
   if (found < 2) return;
   const int first = z[1] < z[0];
-  append(query->spans, (TcSpan){.begin = z[first], .end = z[!first], .s0 = s[first], .s1 = s[!first], .id = i});
+  tc_spans_append(query->spans, (TcSpan){.begin = z[first], .end = z[!first], .s0 = s[first], .s1 = s[!first], .id = i});
 }
 
 static int compare_spans(const void *left, const void *right) {
@@ -68,12 +68,17 @@ static int compare_spans(const void *left, const void *right) {
   return a->id < b->id ? -1 : a->id > b->id;
 }
 
+void tc_spans_sort(TcSpans *spans) {
+  if (spans->count == 2 && compare_spans(&spans->data[0], &spans->data[1]) <= 0) return;
+  if (spans->count > 1) qsort(spans->data, (size_t)spans->count, sizeof *spans->data, compare_spans);
+}
+
 bool tc_trace(const TetcastVolume *volume, const TcRay *ray, TcSpans *spans) {
   Query query = {volume, ray, spans};
   spans->count = 0;
   const bool shell = volume->traversal == TETCAST_TRAVERSAL_SHELL;
   tc_embree_query(volume->embree, ray->from_center, ray->direction, shell ? shell_candidate : cell_candidate, &query);
-  if (spans->count > 1) qsort(spans->data, (size_t)spans->count, sizeof *spans->data, compare_spans);
+  tc_spans_sort(spans);
   return !spans->out_of_memory;
 }
 

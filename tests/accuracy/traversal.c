@@ -120,12 +120,12 @@ static void caster_begin(Caster *caster, const Soup *soup) {
   }
   tetcast_field_destroy(&field);
   caster->gray = gray_of(caster->fixture.context, 1e-9); /* thin: nothing ends early, the depth is the length */
-  caster->worker.spans.context = caster->fixture.context;
+  caster->worker.spans[0].context = caster->fixture.context;
   caster->worker.tolerance = tc_tolerance_begin(&caster->gray->pieces, 0);
 }
 
 static void caster_end(Caster *caster) {
-  tc_spans_clear(&caster->worker.spans);
+  tc_spans_clear(&caster->worker.spans[0]);
   tetcast_transfer_function_destroy(&caster->gray);
   for (int i = 0; i < 2; ++i) tetcast_volume_destroy(&caster->volume[i]);
   tetcast_mesh_destroy(&caster->mesh);

@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Vectors of doubles and what kernels do with them, for the instruction set that the file is compiled for: AVX-512, AVX2 with FMA, or
+ * anything else by GCC's and Clang's vector extensions. Arithmetic is written with operators; multiply-adds are explicit. */
+#ifndef TC_BASE_SIMD_H
+#define TC_BASE_SIMD_H
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#if defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512DQ__)
+#define TC_SIMD_AVX512 1
+#include <immintrin.h>
+#elif defined(__AVX2__) && defined(__FMA__)
+#define TC_SIMD_AVX2 1
+#include <immintrin.h>
+#endif
+
+#if defined(TC_SIMD_AVX512)
+enum { TC_LANES = 8 };
+#else
+enum { TC_LANES = 4 };
+#endif
+
+typedef double TcVec __attribute__((vector_size(8 * TC_LANES)));     /* doubles */
+typedef int64_t TcLong __attribute__((vector_size(8 * TC_LANES)));   /* 64-bit integers */
+typedef uint32_t TcWord __attribute__((vector_size(4 * TC_LANES)));  /* indices */
+typedef double TcRecord __attribute__((vector_size(32)));            /* a vertex: x, y, z, s */
+
+#define TC_INLINE static inline __attribute__((always_inline))
+
+TC_INLINE TcVec tc_set(double x) { return x - (TcVec){0}; }
+TC_INLINE TcWord tc_set_word(uint32_t x) { return x - (TcWord){0}; }
+
+/* ── masks: one bit or one vector element a lane ── */
+
+#if defined(TC_SIMD_AVX512)
+
+typedef __mmask8 TcMask;
+TC_INLINE TcMask tc_mask_of(unsigned bits) { return (TcMask)bits; }
+TC_INLINE unsigned tc_bits(TcMask m) { return m; }
+TC_INLINE TcMask tc_lt(TcVec a, TcVec b) { return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_LT_OQ); }
+TC_INLINE TcMask tc_le(TcVec a, TcVec b) { return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_LE_OQ); }
+TC_INLINE TcMask tc_eq(TcVec a, TcVec b) { return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_EQ_OQ); }
+TC_INLINE TcMask tc_and(TcMask a, TcMask b) { return a & b; }
+TC_INLINE TcMask tc_or(TcMask a, TcMask b) { return a | b; }
+TC_INLINE TcMask tc_and_not(TcMask a, TcMask b) { return (TcMask)(a & ~b); }
+TC_INLINE TcVec tc_select(TcMask m, TcVec a, TcVec b) { return (TcVec)_mm512_mask_blend_pd(m, (__m512d)b, (__m512d)a); }
+TC_INLINE TcWord tc_select_word(TcMask m, TcWord a, TcWord b) { return (TcWord)_mm256_mask_blend_epi32(m, (__m256i)b, (__m256i)a); }
+TC_INLINE TcMask tc_gt_word(TcWord a, TcWord b) { return _mm256_cmpgt_epu32_mask((__m256i)a, (__m256i)b); }
+
+#elif defined(TC_SIMD_AVX2)
+
+typedef __m256d TcMask;
+TC_INLINE TcMask tc_mask_of(unsigned bits) {
+  const TcLong bit = {1, 2, 4, 8};
+  return (TcMask)(((int64_t)bits & bit) == bit);
+}
+TC_INLINE unsigned tc_bits(TcMask m) { return (unsigned)_mm256_movemask_pd(m); }
+TC_INLINE TcMask tc_lt(TcVec a, TcVec b) { return _mm256_cmp_pd((__m256d)a, (__m256d)b, _CMP_LT_OQ); }
+TC_INLINE TcMask tc_le(TcVec a, TcVec b) { return _mm256_cmp_pd((__m256d)a, (__m256d)b, _CMP_LE_OQ); }
+TC_INLINE TcMask tc_eq(TcVec a, TcVec b) { return _mm256_cmp_pd((__m256d)a, (__m256d)b, _CMP_EQ_OQ); }
+TC_INLINE TcMask tc_and(TcMask a, TcMask b) { return _mm256_and_pd(a, b); }
+TC_INLINE TcMask tc_or(TcMask a, TcMask b) { return _mm256_or_pd(a, b); }
+TC_INLINE TcMask tc_and_not(TcMask a, TcMask b) { return _mm256_andnot_pd(b, a); }
+TC_INLINE TcVec tc_select(TcMask m, TcVec a, TcVec b) { return (TcVec)_mm256_blendv_pd((__m256d)b, (__m256d)a, m); }
+TC_INLINE __m128 tc_narrow_mask(TcMask m) { /* a 32-bit element a lane */
+  const __m128 low = _mm_castpd_ps(_mm256_castpd256_pd128(m)), high = _mm_castpd_ps(_mm256_extractf128_pd(m, 1));
+  return _mm_shuffle_ps(low, high, 0x88);
+}
+TC_INLINE TcWord tc_select_word(TcMask m, TcWord a, TcWord b) {
+  return (TcWord)_mm_blendv_ps((__m128)b, (__m128)a, tc_narrow_mask(m));
+}
+TC_INLINE TcMask tc_gt_word(TcWord a, TcWord b) {
+  const TcWord sign = tc_set_word(UINT32_C(1) << 31);
+  return (TcMask)_mm256_cvtepi32_epi64(_mm_cmpgt_epi32((__m128i)(a ^ sign), (__m128i)(b ^ sign)));
+}
+
+#else
+
+typedef TcLong TcMask;
+TC_INLINE TcMask tc_mask_of(unsigned bits) {
+  const TcLong bit = {1, 2, 4, 8};
+  return ((int64_t)bits & bit) == bit;
+}
+TC_INLINE unsigned tc_bits(TcMask m) { return (unsigned)((m[0] & 1) | (m[1] & 2) | (m[2] & 4) | (m[3] & 8)); }
+TC_INLINE TcMask tc_lt(TcVec a, TcVec b) { return a < b; }
+TC_INLINE TcMask tc_le(TcVec a, TcVec b) { return a <= b; }
+TC_INLINE TcMask tc_eq(TcVec a, TcVec b) { return a == b; }
+TC_INLINE TcMask tc_and(TcMask a, TcMask b) { return a & b; }
+TC_INLINE TcMask tc_or(TcMask a, TcMask b) { return a | b; }
+TC_INLINE TcMask tc_and_not(TcMask a, TcMask b) { return a & ~b; }
+TC_INLINE TcVec tc_select(TcMask m, TcVec a, TcVec b) { return (TcVec)((m & (TcLong)a) | (~m & (TcLong)b)); }
+TC_INLINE TcWord tc_select_word(TcMask m, TcWord a, TcWord b) {
+  const TcWord n = __builtin_convertvector(m, TcWord);
+  return (n & a) | (~n & b);
+}
+TC_INLINE TcMask tc_gt_word(TcWord a, TcWord b) {
+  typedef int32_t Int __attribute__((vector_size(4 * TC_LANES)));
+  return __builtin_convertvector((Int)(a > b), TcLong);
+}
+
+#endif
+
+TC_INLINE TcMask tc_all(void) { return tc_mask_of((1U << TC_LANES) - 1); }
+TC_INLINE TcMask tc_gt(TcVec a, TcVec b) { return tc_lt(b, a); }
+TC_INLINE int tc_any(TcMask m) { return tc_bits(m) != 0; }
+
+/* ── arithmetic ── */
+
+/* a b + c; rounded once where the instruction set can, which may change the last bit. */
+TC_INLINE TcVec tc_madd(TcVec a, TcVec b, TcVec c) {
+#if defined(TC_SIMD_AVX512)
+  return (TcVec)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+#elif defined(TC_SIMD_AVX2)
+  return (TcVec)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
+#else
+  return a * b + c;
+#endif
+}
+
+/* a b − p, exactly, where p is a b rounded. */
+TC_INLINE TcVec tc_product_rest(TcVec a, TcVec b, TcVec p) {
+#if defined(TC_SIMD_AVX512)
+  return (TcVec)_mm512_fmsub_pd((__m512d)a, (__m512d)b, (__m512d)p);
+#elif defined(TC_SIMD_AVX2)
+  return (TcVec)_mm256_fmsub_pd((__m256d)a, (__m256d)b, (__m256d)p);
+#else
+  TcVec rest;
+  for (int i = 0; i < TC_LANES; ++i) rest[i] = fma(a[i], b[i], -p[i]);
+  return rest;
+#endif
+}
+
+TC_INLINE TcVec tc_abs(TcVec a) { return (TcVec)((TcLong)a & INT64_MAX); }
+TC_INLINE TcVec tc_min(TcVec a, TcVec b) { return tc_select(tc_lt(a, b), a, b); } /* b if one is NaN */
+TC_INLINE TcVec tc_max(TcVec a, TcVec b) { return tc_select(tc_gt(a, b), a, b); }
+
+TC_INLINE TcVec tc_sqrt(TcVec a) {
+#if defined(TC_SIMD_AVX512)
+  return (TcVec)_mm512_sqrt_pd((__m512d)a);
+#elif defined(TC_SIMD_AVX2)
+  return (TcVec)_mm256_sqrt_pd((__m256d)a);
+#else
+  for (int i = 0; i < TC_LANES; ++i) a[i] = sqrt(a[i]);
+  return a;
+#endif
+}
+
+/* 2ⁿ for whole n in [−1022, 1023]. */
+TC_INLINE TcVec tc_power_of_two(TcLong n) { return (TcVec)((n + 1023) << 52); }
+
+TC_INLINE TcLong tc_to_long(TcVec a) { return __builtin_convertvector(a, TcLong); }
+
+/* ── memory ── */
+
+/* words[index · stride + offset], in lanes of the mask; 0 elsewhere. */
+TC_INLINE TcWord tc_gather_word(TcMask mask, const uint32_t *words, TcWord index, int stride, TcWord offset) {
+#if defined(TC_SIMD_AVX512)
+  const TcLong at = (TcLong)_mm512_cvtepu32_epi64((__m256i)index) * stride + (TcLong)_mm512_cvtepu32_epi64((__m256i)offset);
+  return (TcWord)_mm512_mask_i64gather_epi32(_mm256_setzero_si256(), mask, (__m512i)at, words, 4);
+#else
+  TcWord result = {0};
+  const unsigned bits = tc_bits(mask);
+  for (int i = 0; i < TC_LANES; ++i) {
+    if (bits >> i & 1) result[i] = words[(size_t)index[i] * (size_t)stride + offset[i]];
+  }
+  return result;
+#endif
+}
+
+/* table[index], indices at least 0. */
+TC_INLINE TcVec tc_gather(const double *table, TcLong index) {
+#if defined(TC_SIMD_AVX512)
+  return (TcVec)_mm512_i64gather_pd((__m512i)index, table, 8);
+#else
+  TcVec result;
+  for (int i = 0; i < TC_LANES; ++i) result[i] = table[index[i]];
+  return result;
+#endif
+}
+
+/* The four components of one record a lane. */
+TC_INLINE void tc_transpose(const TcRecord record[TC_LANES], TcVec component[4]) {
+#if defined(TC_SIMD_AVX512)
+  __m512d pair[4];
+  for (int i = 0; i < 4; ++i) {
+    pair[i] = _mm512_insertf64x4(_mm512_castpd256_pd512((__m256d)record[i]), (__m256d)record[i + 4], 1);
+  }
+  /* pair[i] = (record i | record i + 4): a 4 × 4 transpose in each half. */
+  const __m512d a = _mm512_unpacklo_pd(pair[0], pair[1]), b = _mm512_unpackhi_pd(pair[0], pair[1]);
+  const __m512d c = _mm512_unpacklo_pd(pair[2], pair[3]), d = _mm512_unpackhi_pd(pair[2], pair[3]);
+  const __m512i front = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13), back = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+  component[0] = (TcVec)_mm512_permutex2var_pd(a, front, c);
+  component[1] = (TcVec)_mm512_permutex2var_pd(b, front, d);
+  component[2] = (TcVec)_mm512_permutex2var_pd(a, back, c);
+  component[3] = (TcVec)_mm512_permutex2var_pd(b, back, d);
+#elif defined(TC_SIMD_AVX2)
+  const __m256d a = _mm256_unpacklo_pd((__m256d)record[0], (__m256d)record[1]);
+  const __m256d b = _mm256_unpackhi_pd((__m256d)record[0], (__m256d)record[1]);
+  const __m256d c = _mm256_unpacklo_pd((__m256d)record[2], (__m256d)record[3]);
+  const __m256d d = _mm256_unpackhi_pd((__m256d)record[2], (__m256d)record[3]);
+  component[0] = (TcVec)_mm256_permute2f128_pd(a, c, 0x20);
+  component[1] = (TcVec)_mm256_permute2f128_pd(b, d, 0x20);
+  component[2] = (TcVec)_mm256_permute2f128_pd(a, c, 0x31);
+  component[3] = (TcVec)_mm256_permute2f128_pd(b, d, 0x31);
+#else
+  for (int k = 0; k < 4; ++k) {
+    for (int i = 0; i < TC_LANES; ++i) component[k][i] = record[i][k];
+  }
+#endif
+}
+
+#endif

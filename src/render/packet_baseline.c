@@ -1,0 +1,3 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#define PACKET_KERNEL tc_kernel_baseline
+#include "render/packet_tmpl.h"

@@ -1,0 +1,304 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The kernel for packets of neighbouring rays, compiled once for each instruction set: the including file defines
+ *     PACKET_KERNEL   the name of the kernel
+ * It computes what the scalar kernel (kernel_tmpl.h) does: the same faces and cells, and light that agrees to rounding. */
+#include "render/packet_light.h"
+#include "render/packet_walk.h"
+#include "render/render.h"
+
+/* The widths of a packet's pixels. */
+enum { PACKET_X = TC_LANES == 8 ? 4 : 2, PACKET_Y = 2 };
+
+typedef struct Lines {
+  TcVec eye[3], offset[3], direction[3];
+} Lines;
+
+/* tc_view_line() */
+static void view_lines(const TcView *view, TcVec u, TcVec v, Lines *lines) {
+  for (int k = 0; k < 3; ++k) {
+    const TcVec shift = u * view->right[k] + v * view->up[k];
+    lines->eye[k] = tc_set(view->eye[k]);
+    lines->offset[k] = view->orthographic ? shift : tc_set(0);
+    lines->direction[k] = view->orthographic ? tc_set(view->forward[k]) : view->forward[k] + shift;
+  }
+  if (view->orthographic) return;
+  TcVec *d = lines->direction;
+  const TcVec length = tc_sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  for (int k = 0; k < 3; ++k) d[k] /= length;
+}
+
+static TcVec two_sum(TcVec a, TcVec b, TcVec *sum) {
+  const TcVec s = a + b, t = s - a;
+  *sum = s;
+  return (a - (s - t)) + (b - t);
+}
+
+static TcVec without_tiny(TcVec x) { return tc_select(tc_lt(tc_abs(x), tc_set(TC_TINY)), tc_set(0), x); }
+
+/* tc_ray_begin() up to the choice of kz: rays in all lanes, with their components in the order x, y, z. */
+static TcMask place_rays(const TetcastVolume *volume, const Lines *lines, TcRays *rays, TcVec rest[3]) {
+  const TcVec *direction = lines->direction;
+  TcVec along = tc_set(0), distance2 = tc_set(0);
+  for (int k = 0; k < 3; ++k) along += (volume->center[k] - lines->eye[k] - lines->offset[k]) * direction[k];
+  for (int k = 0; k < 3; ++k) {
+    const TcVec product = along * direction[k];
+    TcVec shift;
+    rest[k] = tc_product_rest(along, direction[k], product);
+    rest[k] += two_sum(product, lines->offset[k], &shift);
+    rest[k] += two_sum(lines->eye[k], shift, &rays->origin[k]);
+    rays->origin[k] = without_tiny(rays->origin[k]);
+    rays->direction[k] = direction[k];
+    rays->from_center[k] = rays->origin[k] - volume->center[k] + rest[k];
+    distance2 += rays->from_center[k] * rays->from_center[k];
+  }
+  rays->near = -along;
+  const TcVec radius = tc_set(volume->radius);
+  return tc_and(tc_le(distance2, radius * radius), tc_le(-along, radius));
+}
+
+/* The lanes whose direction is largest in component kz, by the scalar rule. */
+static TcMask lanes_along(const TcVec direction[3], int kz) {
+  const TcVec x = tc_abs(direction[0]), y = tc_abs(direction[1]), z = tc_abs(direction[2]);
+  const TcMask third = tc_gt(z, tc_max(y, x)), second = tc_and_not(tc_gt(y, x), third);
+  return kz == 2 ? third : kz == 1 ? second : tc_and_not(tc_and_not(tc_all(), third), second);
+}
+
+/* The rest of tc_ray_begin(), for the lanes along kz. */
+static void turn_rays(const TcRays *placed, const TcVec rest[3], int kz, TcRays *rays) {
+  const int kx = (kz + 1) % 3, ky = (kz + 2) % 3;
+  *rays = *placed;
+  rays->kz = kz;
+  rays->origin[0] = placed->origin[kx];
+  rays->origin[1] = placed->origin[ky];
+  rays->origin[2] = placed->origin[kz];
+  rays->shear_x = without_tiny(placed->direction[kx] / placed->direction[kz]);
+  rays->shear_y = without_tiny(placed->direction[ky] / placed->direction[kz]);
+  rays->inverse_z = 1 / placed->direction[kz];
+  rays->rest_x = without_tiny(rest[kx] - rays->shear_x * rest[kz]);
+  rays->rest_y = without_tiny(rest[ky] - rays->shear_y * rest[kz]);
+  rays->rest_z = rest[kz] * rays->inverse_z;
+}
+
+/* ── where the rays enter and leave ── */
+
+typedef struct Query {
+  const TetcastVolume *volume;
+  const TcRays *rays;
+  TcSpans *spans; /* [TC_LANES] */
+} Query;
+
+/* A shell face that the lanes of `lanes` may cross. */
+static void face_candidate(void *user, uint32_t i, unsigned lanes) {
+  Query *query = user;
+  const TetcastVolume *volume = query->volume;
+  const TcShellFace *face = &volume->adjacency.shell[i];
+  const TcMask mask = tc_mask_of(lanes);
+  TcPoints p[3];
+  for (int k = 0; k < 3; ++k) {
+    double record[4];
+    tc_volume_vertex(volume, face->vertex[k], record);
+    const TcVec component[4] = {tc_set(record[0]), tc_set(record[1]), tc_set(record[2]), tc_set(record[3])};
+    p[k] = tc_project_components(query->rays, component, tc_set_word(face->vertex[k]));
+  }
+  TcVec e[3], z, s;
+  tc_edges(mask, (const TcPoints *const[]){&p[0], &p[1], &p[2]}, (const TcPoints *const[]){&p[1], &p[2], &p[0]}, e);
+  const unsigned signs[3] = {tc_bits(tc_gt(e[0], tc_set(0))), tc_bits(tc_gt(e[1], tc_set(0))), tc_bits(tc_gt(e[2], tc_set(0)))};
+  unsigned inside = lanes & ((signs[0] & signs[1] & signs[2]) | ~(signs[0] | signs[1] | signs[2]));
+  if (!inside) return;
+  tc_crossings(p, e, &z, &s);
+  for (; inside; inside &= inside - 1) {
+    const int lane = __builtin_ctz(inside);
+    tc_spans_append(&query->spans[lane], (TcSpan){.begin = z[lane], .end = z[lane], .s0 = s[lane], .id = i});
+  }
+}
+
+static bool trace(const TetcastVolume *volume, const TcRays *rays, unsigned lanes, TcSpans *spans) {
+  Query query = {volume, rays, spans};
+  for (int i = 0; i < TC_LANES; ++i) spans[i].count = 0;
+  double from_center[3][TC_LANES], direction[3][TC_LANES];
+  memcpy(from_center, rays->from_center, sizeof from_center);
+  memcpy(direction, rays->direction, sizeof direction);
+  tc_embree_query_packet(volume->embree, TC_LANES, lanes, from_center[0], direction[0], face_candidate, &query);
+  bool ok = true;
+  for (int i = 0; i < TC_LANES; ++i) {
+    tc_spans_sort(&spans[i]);
+    for (int64_t j = 0; j < spans[i].count; ++j) spans[i].data[j].done = false;
+    ok = ok && !spans[i].out_of_memory;
+  }
+  return ok;
+}
+
+/* The next face at which a lane sets out, or false. next: where to look from. */
+static bool next_start(const TcSpans *spans, int64_t *next, uint32_t *face) {
+  while (*next < spans->count && spans->data[*next].done) ++*next;
+  if (*next == spans->count) return false;
+  *face = spans->data[(*next)++].id;
+  return true;
+}
+
+static void mark_done(TcSpans *spans, int64_t from, uint32_t face) {
+  for (int64_t j = from; j < spans->count; ++j) {
+    if (spans->data[j].id == face) spans->data[j].done = true;
+  }
+}
+
+/* ── a packet ── */
+
+/* One step of the lanes of `active`: the cells ahead are crossed and their light added, beyond *seen. */
+TC_INLINE TcMask cross(const TetcastVolume *volume, const bool wide, const bool cells, const TcPieces *pieces, double thin,
+                       const TcRays *rays, TcMask active, TcWalks *walks, TcVec *seen, TcLights *lights, int64_t *segments) {
+  const TcVec z = walks->z, s = walks->s;
+  const TcWord cell = walks->cell;
+  const TcMask lost = tc_walks_step(volume, wide, rays, active, walks);
+  TcMask moved = tc_and(tc_and_not(active, lost), tc_gt(walks->z, *seen));
+  *segments += __builtin_popcount(tc_bits(moved));
+  const TcVec from = *seen;
+  *seen = tc_select(moved, walks->z, from);
+  if (cells) {
+    double value[TC_LANES] = {0};
+    for (unsigned lanes = tc_bits(moved); lanes; lanes &= lanes - 1) {
+      const int i = __builtin_ctz(lanes);
+      value[i] = volume->cell_values[cell[i]];
+    }
+    TcVec values;
+    memcpy(&values, value, sizeof values);
+    moved = tc_and(moved, tc_eq(values, values)); /* NaN is transparent */
+    tc_lights_add(lights, pieces, thin, moved, walks->z - from, values, values);
+  } else {
+    TcVec s0 = s;
+    const TcMask behind = tc_and(moved, tc_lt(z, from));
+    if (tc_any(behind)) { /* part of the segment has been seen: at the eye, or where the mesh folds */
+      const TcVec w = (from - z) / (walks->z - z);
+      s0 = tc_select(behind, (1 - w) * s + w * walks->s, s);
+    }
+    moved = tc_and(moved, tc_and(tc_eq(s0, s0), tc_eq(walks->s, walks->s)));
+    tc_lights_add(lights, pieces, thin, moved, walks->z - from, s0, walks->s);
+  }
+  return lost;
+}
+
+/* All paths of the rays in `lanes`. */
+TC_INLINE void cast_lanes(const TetcastVolume *volume, const bool wide, const bool cells, const TcPieces *pieces,
+                          const TcTolerance *tolerance, const TcRays *rays, unsigned lanes, TcSpans *spans, TcLights *lights,
+                          unsigned *stopped, int64_t *steps, TcWorker *worker) {
+  int64_t next[TC_LANES] = {0}, segments = 0;
+  uint32_t face[TC_LANES] = {0};
+  TcWalks walks;
+  memset(&walks, 0, sizeof walks);
+  unsigned starting = 0;
+  for (int i = 0; i < TC_LANES; ++i) {
+    if (lanes >> i & 1 && next_start(&spans[i], &next[i], &face[i])) starting |= 1U << i;
+  }
+  TcMask active = tc_mask_of(0);
+  TcVec seen = tc_set(0);
+  const TcWord shell = tc_set_word(TC_SHELL - 1);
+  int64_t step = 0;
+  while (starting || tc_any(active)) {
+    if (starting) {
+      const TcMask mask = tc_mask_of(starting);
+      tc_walks_begin(volume, wide, rays, mask, face, &walks);
+      seen = tc_select(mask, tc_max(walks.z, rays->near), seen);
+      active = tc_or(active, mask);
+      starting = 0;
+    }
+    const TcMask lost = cross(volume, wide, cells, pieces, tolerance->thin, rays, active, &walks, &seen, lights, &segments);
+    if (++step % 64 == 0) tc_lights_end_block(lights);
+    const TcMask opaque = tc_lights_opaque(lights, pieces, tolerance->opaque, active);
+    *stopped |= tc_bits(opaque);
+    worker->lost += __builtin_popcount(tc_bits(lost));
+    active = tc_and_not(active, tc_or(lost, opaque));
+    unsigned ended = tc_bits(tc_and(active, tc_gt_word(walks.cell, shell)));
+    active = tc_and_not(active, tc_mask_of(ended));
+    for (; ended; ended &= ended - 1) {
+      const int i = __builtin_ctz(ended);
+      mark_done(&spans[i], next[i], walks.cell[i] & ~TC_SHELL);
+      if (next_start(&spans[i], &next[i], &face[i])) starting |= 1U << i;
+    }
+  }
+  tc_lights_end_block(lights);
+  worker->segments += segments;
+  *steps = step;
+}
+
+/* Light and bound of a packet of rays, added to the pixels of their lanes. */
+TC_INLINE bool cast_packet(const TcJob *job, const bool wide, const bool cells, const Lines *lines, unsigned lanes, TcWorker *worker,
+                           double sum[TC_LANES][4], double error[TC_LANES]) {
+  TcRays placed, rays;
+  TcVec rest[3];
+  lanes &= tc_bits(place_rays(job->volume, lines, &placed, rest));
+  for (int kz = 0; kz < 3 && lanes; ++kz) {
+    const unsigned along = lanes & tc_bits(lanes_along(placed.direction, kz));
+    if (!along) continue;
+    turn_rays(&placed, rest, kz, &rays);
+    if (!trace(job->volume, &rays, along, worker->spans)) return false;
+    TcLights lights;
+    unsigned stopped = 0;
+    int64_t steps;
+    tc_lights_begin(&lights);
+    cast_lanes(job->volume, wide, cells, job->pieces, &worker->tolerance, &rays, along, worker->spans, &lights, &stopped, &steps, worker);
+    for (unsigned left = along; left; left &= left - 1) {
+      const int i = __builtin_ctz(left);
+      const TcLight light = {.depth = lights.depth[i], .stopped = stopped >> i & 1};
+      if (light.depth == 0) continue;
+      for (int k = 0; k < 3; ++k) sum[i][k] += lights.color[k][i];
+      sum[i][3] -= expm1(-light.depth);
+      error[i] += tc_tolerance_bound(&worker->tolerance, &light, steps);
+    }
+  }
+  return true;
+}
+
+TC_INLINE bool render_tile(const TcJob *job, const bool wide, const bool cells, int64_t x0, int64_t y0, int64_t x1, int64_t y1,
+                           TcWorker *worker) {
+  const int samples = job->samples_x * job->samples_y;
+  const double columns = (double)(job->width * job->samples_x), rows = (double)(job->height * job->samples_y);
+  for (int64_t y = y0; y < y1; y += PACKET_Y) {
+    for (int64_t x = x0; x < x1; x += PACKET_X) {
+      double sum[TC_LANES][4] = {{0}}, error[TC_LANES] = {0}, u[TC_LANES], v[TC_LANES];
+      for (int i = 0; i < samples; ++i) {
+        unsigned lanes = 0;
+        for (int lane = 0; lane < TC_LANES; ++lane) {
+          const int64_t px = x + lane % PACKET_X, py = y + lane / PACKET_X;
+          if (px < x1 && py < y1) lanes |= 1U << lane;
+          u[lane] = 2 * ((double)(px * job->samples_x + i % job->samples_x) + 0.5) / columns - 1;
+          v[lane] = 1 - 2 * ((double)(py * job->samples_y + i / job->samples_x) + 0.5) / rows;
+        }
+        TcVec us, vs;
+        memcpy(&us, u, sizeof us);
+        memcpy(&vs, v, sizeof vs);
+        Lines lines;
+        view_lines(&job->view, us, vs, &lines);
+        if (!cast_packet(job, wide, cells, &lines, lanes, worker, sum, error)) return false;
+      }
+      for (int lane = 0; lane < TC_LANES; ++lane) {
+        const int64_t px = x + lane % PACKET_X, py = y + lane / PACKET_X;
+        if (px >= x1 || py >= y1) continue;
+        for (int k = 0; k < 4; ++k) sum[lane][k] /= samples;
+        const double bound = tc_frame_store(job->frame, px, py, sum[lane], error[lane] / samples);
+        if (!(bound <= worker->error)) worker->error = bound;
+      }
+    }
+  }
+  return true;
+}
+
+/* One function for each way the data lie. */
+static __attribute__((noinline)) bool tile_wide(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker) {
+  return render_tile(job, true, false, x0, y0, x1, y1, worker);
+}
+static __attribute__((noinline)) bool tile_narrow(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker) {
+  return render_tile(job, false, false, x0, y0, x1, y1, worker);
+}
+static __attribute__((noinline)) bool tile_wide_cells(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker) {
+  return render_tile(job, true, true, x0, y0, x1, y1, worker);
+}
+static __attribute__((noinline)) bool tile_narrow_cells(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1,
+                                                        TcWorker *worker) {
+  return render_tile(job, false, true, x0, y0, x1, y1, worker);
+}
+
+bool PACKET_KERNEL(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker) {
+  const bool wide = job->volume->vertices_are_double, cells = job->volume->association == TETCAST_CELL;
+  if (cells) return (wide ? tile_wide_cells : tile_narrow_cells)(job, x0, y0, x1, y1, worker);
+  return (wide ? tile_wide : tile_narrow)(job, x0, y0, x1, y1, worker);
+}

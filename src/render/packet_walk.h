@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* walk.h for a packet of rays, a ray a lane. The signs that decide are those of rayspace.c, lane by lane; depths and values at faces may
+ * differ from the scalar ones in the last bits, as products and sums are fused where the instruction set can. */
+#ifndef TC_RENDER_PACKET_WALK_H
+#define TC_RENDER_PACKET_WALK_H
+
+#include "base/simd.h"
+#include "traverse/rayspace.h"
+
+/* Rays with the same kz. */
+typedef struct TcRays {
+  TcVec origin[3]; /* along kx, ky, kz */
+  TcVec shear_x, shear_y, inverse_z, rest_x, rest_y, rest_z, near;
+  TcVec from_center[3], direction[3];
+  int kz;
+} TcRays;
+
+typedef struct TcPoints {
+  TcVec x, y, z, s;
+  TcWord id;
+} TcPoints;
+
+/* As TcWalk. */
+typedef struct TcWalks {
+  TcPoints v[3];
+  TcVec edge[3], z, s;
+  TcWord cell;
+} TcWalks;
+
+/* The records of vertices `id`. `wide` and the like are constants wherever these functions are used. */
+TC_INLINE void tc_load_vertices(const TetcastVolume *volume, const bool wide, TcWord id, TcVec component[4]) {
+  typedef float Narrow __attribute__((vector_size(16)));
+  TcRecord record[TC_LANES];
+  for (int i = 0; i < TC_LANES; ++i) {
+    if (wide) {
+      memcpy(&record[i], (const double *)volume->vertices + 4 * (size_t)id[i], sizeof record[i]);
+    } else {
+      Narrow narrow;
+      memcpy(&narrow, (const float *)volume->vertices + 4 * (size_t)id[i], sizeof narrow);
+      record[i] = __builtin_convertvector(narrow, TcRecord);
+    }
+  }
+  tc_transpose(record, component);
+}
+
+TC_INLINE TcPoints tc_project_components(const TcRays *rays, const TcVec component[4], TcWord id) {
+  TcVec x, y, z;
+  switch (rays->kz) { /* the same for many packets: well predicted */
+  case 0: x = component[1], y = component[2], z = component[0]; break;
+  case 1: x = component[2], y = component[0], z = component[1]; break;
+  default: x = component[0], y = component[1], z = component[2]; break;
+  }
+  x -= rays->origin[0];
+  y -= rays->origin[1];
+  z -= rays->origin[2];
+  return (TcPoints){x - rays->shear_x * z - rays->rest_x, y - rays->shear_y * z - rays->rest_y, z * rays->inverse_z - rays->rest_z,
+                    component[3], id};
+}
+
+/* tc_edge_close() for the lanes of `close`. */
+static __attribute__((noinline)) TcVec tc_edges_close(const TcPoints *a, const TcPoints *b, TcVec e, TcMask close) {
+  const TcVec p = a->x * b->y, q = a->y * b->x;
+  const TcVec p_rest = tc_product_rest(a->x, b->y, p), q_rest = tc_product_rest(a->y, b->x, q);
+  const TcVec d = p_rest - q_rest, sum = (p - q) + d;
+  unsigned zero = tc_bits(tc_and(close, tc_eq(sum, tc_set(0))));
+  e = tc_select(close, sum, e);
+  for (; zero; zero &= zero - 1) {
+    const int i = __builtin_ctz(zero);
+    const TcPoint c = {a->x[i], a->y[i], 0, 0, a->id[i]}, f = {b->x[i], b->y[i], 0, 0, b->id[i]};
+    e[i] = tc_edge_close(&c, &f);
+  }
+  return e;
+}
+
+/* tc_edge() of three pairs at once: where products nearly cancel, which is rare, they are all looked at again. */
+TC_INLINE void tc_edges(TcMask active, const TcPoints *const a[3], const TcPoints *const b[3], TcVec e[3]) {
+  TcMask close[3];
+  for (int k = 0; k < 3; ++k) {
+    const TcVec p = a[k]->x * b[k]->y;
+    e[k] = p - a[k]->y * b[k]->x;
+    close[k] = tc_and(active, tc_le(tc_abs(e[k]), 0x1p-8 * tc_abs(p)));
+  }
+  if (!tc_any(tc_or(tc_or(close[0], close[1]), close[2]))) return;
+  for (int k = 0; k < 3; ++k) {
+    if (!tc_any(close[k])) continue;
+    const TcPoints c = *a[k], d = *b[k];
+    e[k] = tc_edges_close(&c, &d, e[k], close[k]);
+  }
+}
+
+TC_INLINE void tc_crossings(const TcPoints v[3], const TcVec edge[3], TcVec *z, TcVec *s) {
+  const TcVec inverse = 1 / (edge[0] + edge[1] + edge[2]);
+  *z = tc_madd(edge[1], v[0].z, tc_madd(edge[2], v[1].z, edge[0] * v[2].z)) * inverse;
+  *s = tc_madd(edge[1], v[0].s, tc_madd(edge[2], v[1].s, edge[0] * v[2].s)) * inverse;
+}
+
+TC_INLINE TcPoints tc_select_points(TcMask m, TcPoints a, TcPoints b) {
+  return (TcPoints){tc_select(m, a.x, b.x), tc_select(m, a.y, b.y), tc_select(m, a.z, b.z), tc_select(m, a.s, b.s),
+                    tc_select_word(m, a.id, b.id)};
+}
+
+/* Sets the lanes of `mask` out from shell faces. */
+TC_INLINE void tc_walks_begin(const TetcastVolume *volume, const bool wide, const TcRays *rays, TcMask mask,
+                              const uint32_t face[TC_LANES], TcWalks *walks) {
+  TcWord id[3] = {{0}, {0}, {0}}, cell = {0};
+  unsigned lanes = tc_bits(mask);
+  for (; lanes; lanes &= lanes - 1) {
+    const int i = __builtin_ctz(lanes);
+    const TcShellFace *shell = &volume->adjacency.shell[face[i]];
+    for (int k = 0; k < 3; ++k) id[k][i] = shell->vertex[k];
+    cell[i] = shell->cell;
+  }
+  TcPoints v[3];
+  for (int k = 0; k < 3; ++k) {
+    TcVec component[4];
+    tc_load_vertices(volume, wide, id[k], component);
+    v[k] = tc_project_components(rays, component, id[k]);
+  }
+  TcVec e[3];
+  tc_edges(mask, (const TcPoints *const[]){&v[0], &v[1], &v[2]}, (const TcPoints *const[]){&v[1], &v[2], &v[0]}, e);
+  const TcMask turn = tc_lt(e[0], tc_set(0)); /* clockwise: v[1] and v[2] change places */
+  const TcPoints second = tc_select_points(turn, v[2], v[1]), third = tc_select_points(turn, v[1], v[2]);
+  const TcVec edge[3] = {tc_select(turn, -e[2], e[0]), tc_select(turn, -e[1], e[1]), tc_select(turn, -e[0], e[2])};
+  walks->v[0] = tc_select_points(mask, v[0], walks->v[0]);
+  walks->v[1] = tc_select_points(mask, second, walks->v[1]);
+  walks->v[2] = tc_select_points(mask, third, walks->v[2]);
+  for (int k = 0; k < 3; ++k) walks->edge[k] = tc_select(mask, edge[k], walks->edge[k]);
+  walks->cell = tc_select_word(mask, cell, walks->cell);
+  tc_crossings(walks->v, walks->edge, &walks->z, &walks->s);
+}
+
+/* Crosses the cells ahead in the lanes of `active`, where `cell` becomes what is behind, TC_SHELL | face included. Returns the lanes that
+ * found no way out. */
+TC_INLINE TcMask tc_walks_step(const TetcastVolume *volume, const bool wide, const TcRays *rays, TcMask active, TcWalks *walks) {
+  const uint32_t *cells = (const uint32_t *)(const void *)volume->adjacency.cells;
+  TcPoints *v = walks->v;
+  const TcWord zero = {0};
+  const TcWord id = tc_select_word(active, tc_gather_word(active, cells, walks->cell, 5, zero) ^ v[0].id ^ v[1].id ^ v[2].id, zero);
+  TcVec component[4], e[3];
+  tc_load_vertices(volume, wide, id, component);
+  const TcPoints q = tc_project_components(rays, component, id);
+  tc_edges(active, (const TcPoints *const[]){&v[0], &v[1], &v[2]}, (const TcPoints *const[]){&q, &q, &q}, e);
+  TcMask positive[3], out[3];
+  for (int k = 0; k < 3; ++k) positive[k] = tc_and(active, tc_gt(e[k], tc_set(0)));
+  for (int k = 0; k < 3; ++k) out[k] = tc_and_not(positive[(k + 2) % 3], positive[(k + 1) % 3]);
+  const TcWord left = tc_select_word(out[0], v[0].id, tc_select_word(out[1], v[1].id, v[2].id));
+  TcWord rank = tc_select_word(tc_gt_word(left, id), tc_set_word(2), tc_set_word(1)); /* 1: the neighbours follow the XOR */
+  for (int k = 0; k < 3; ++k) rank = tc_select_word(tc_gt_word(left, v[k].id), rank + 1, rank);
+  const TcWord next = tc_gather_word(active, cells, walks->cell, 5, rank);
+  walks->cell = tc_select_word(active, next, walks->cell);
+  for (int k = 0; k < 3; ++k) {
+    const TcVec edge = tc_select(out[(k + 1) % 3], e[k], walks->edge[k]);
+    walks->edge[k] = tc_select(out[k], -e[(k + 1) % 3], edge);
+    v[k] = tc_select_points(out[k], q, v[k]);
+  }
+  tc_crossings(v, walks->edge, &walks->z, &walks->s);
+  return tc_and_not(active, tc_or(tc_or(out[0], out[1]), out[2]));
+}
+
+#endif
