@@ -21,7 +21,7 @@ TC_INLINE TcVec tc_polynomial(TcVec x, const double *c, int n) {
 TC_INLINE TcVec tc_exp(TcVec x) {
   static const double c[] = {1,           1,           1. / 2,       1. / 6,        1. / 24,        1. / 120,       1. / 720,
                              1. / 5040,   1. / 40320,  1. / 362880,  1. / 3628800,  1. / 39916800,  1. / 479001600, 1. / 6227020800};
-  x = tc_max(x, tc_set(-1500));
+  x = tc_max(x, tc_set(-1400)); /* where both powers of two are in range, and their product is not */
   const TcVec shift = tc_set(0x1.8p52), n = (x * 0x1.71547652b82fep0 + shift) - shift;
   TcVec r = tc_madd(n, tc_set(-0x1.62e42feep-1), x); /* ln 2 in 32 bits: the product is exact */
   r = tc_madd(n, tc_set(-0x1.a39ef35793c76p-33), r);

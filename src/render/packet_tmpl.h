@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The kernel for packets of neighbouring rays, compiled once for each instruction set: the including file defines
- *     PACKET_KERNEL   the name of the kernel
+ *     PACKET_KERNEL, PACKET_CAST   the names of the two functions
  * It computes what the scalar kernel (kernel_tmpl.h) does: the same faces and cells, and light that agrees to rounding. */
 #include "render/packet_light.h"
 #include "render/packet_walk.h"
@@ -177,10 +177,11 @@ TC_INLINE TcMask cross(const TetcastVolume *volume, const bool wide, const bool 
   return lost;
 }
 
-/* All paths of the rays in `lanes`. */
-TC_INLINE void cast_lanes(const TetcastVolume *volume, const bool wide, const bool cells, const TcPieces *pieces,
-                          const TcTolerance *tolerance, const TcRays *rays, unsigned lanes, TcSpans *spans, TcLights *lights,
-                          unsigned *stopped, int64_t *steps, TcWorker *worker) {
+/* All paths of the rays in `lanes`; returns the number of steps. */
+TC_INLINE int64_t cast_lanes(const TetcastVolume *volume, const bool wide, const bool cells, const TcPieces *pieces,
+                             const TcTolerance *tolerance, const TcRays *rays, unsigned lanes, TcLights *lights, unsigned *stopped,
+                             TcWorker *worker) {
+  TcSpans *spans = worker->spans;
   int64_t next[TC_LANES] = {0}, segments = 0;
   uint32_t face[TC_LANES] = {0};
   TcWalks walks;
@@ -217,32 +218,32 @@ TC_INLINE void cast_lanes(const TetcastVolume *volume, const bool wide, const bo
   }
   tc_lights_end_block(lights);
   worker->segments += segments;
-  *steps = step;
+  return step;
 }
 
-/* Light and bound of a packet of rays, added to the pixels of their lanes. */
-TC_INLINE bool cast_packet(const TcJob *job, const bool wide, const bool cells, const Lines *lines, unsigned lanes, TcWorker *worker,
-                           double sum[TC_LANES][4], double error[TC_LANES]) {
+/* The light of a packet of rays, any rays; *steps is at least the number of each one's segments. */
+TC_INLINE bool cast_packet(const TetcastVolume *volume, const bool wide, const bool cells, const TcPieces *pieces, const Lines *lines,
+                           unsigned lanes, TcWorker *worker, TcLight light[TC_LANES], int64_t *steps) {
   TcRays placed, rays;
   TcVec rest[3];
-  lanes &= tc_bits(place_rays(job->volume, lines, &placed, rest));
+  for (int i = 0; i < TC_LANES; ++i) light[i] = tc_light_begin(worker->tolerance.thin, worker->tolerance.opaque);
+  lanes &= tc_bits(place_rays(volume, lines, &placed, rest));
+  *steps = 0;
   for (int kz = 0; kz < 3 && lanes; ++kz) {
     const unsigned along = lanes & tc_bits(lanes_along(placed.direction, kz));
     if (!along) continue;
     turn_rays(&placed, rest, kz, &rays);
-    if (!trace(job->volume, &rays, along, worker->spans)) return false;
+    if (!trace(volume, &rays, along, worker->spans)) return false;
     TcLights lights;
     unsigned stopped = 0;
-    int64_t steps;
     tc_lights_begin(&lights);
-    cast_lanes(job->volume, wide, cells, job->pieces, &worker->tolerance, &rays, along, worker->spans, &lights, &stopped, &steps, worker);
+    const int64_t most = cast_lanes(volume, wide, cells, pieces, &worker->tolerance, &rays, along, &lights, &stopped, worker);
+    *steps = most > *steps ? most : *steps;
     for (unsigned left = along; left; left &= left - 1) {
       const int i = __builtin_ctz(left);
-      const TcLight light = {.depth = lights.depth[i], .stopped = stopped >> i & 1};
-      if (light.depth == 0) continue;
-      for (int k = 0; k < 3; ++k) sum[i][k] += lights.color[k][i];
-      sum[i][3] -= expm1(-light.depth);
-      error[i] += tc_tolerance_bound(&worker->tolerance, &light, steps);
+      light[i].depth = lights.depth[i];
+      for (int k = 0; k < 3; ++k) light[i].color[k] = lights.color[k][i];
+      light[i].stopped = stopped >> i & 1;
     }
   }
   return true;
@@ -267,8 +268,16 @@ TC_INLINE bool render_tile(const TcJob *job, const bool wide, const bool cells, 
         memcpy(&us, u, sizeof us);
         memcpy(&vs, v, sizeof vs);
         Lines lines;
+        TcLight light[TC_LANES];
+        int64_t steps;
         view_lines(&job->view, us, vs, &lines);
-        if (!cast_packet(job, wide, cells, &lines, lanes, worker, sum, error)) return false;
+        if (!cast_packet(job->volume, wide, cells, job->pieces, &lines, lanes, worker, light, &steps)) return false;
+        for (int lane = 0; lane < TC_LANES; ++lane) {
+          if (light[lane].depth == 0) continue;
+          for (int k = 0; k < 3; ++k) sum[lane][k] += light[lane].color[k];
+          sum[lane][3] -= expm1(-light[lane].depth);
+          error[lane] += tc_tolerance_bound(&worker->tolerance, &light[lane], steps);
+        }
       }
       for (int lane = 0; lane < TC_LANES; ++lane) {
         const int64_t px = x + lane % PACKET_X, py = y + lane / PACKET_X;
@@ -283,22 +292,41 @@ TC_INLINE bool render_tile(const TcJob *job, const bool wide, const bool cells, 
 }
 
 /* One function for each way the data lie. */
-static __attribute__((noinline)) bool tile_wide(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker) {
-  return render_tile(job, true, false, x0, y0, x1, y1, worker);
-}
-static __attribute__((noinline)) bool tile_narrow(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker) {
-  return render_tile(job, false, false, x0, y0, x1, y1, worker);
-}
-static __attribute__((noinline)) bool tile_wide_cells(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker) {
-  return render_tile(job, true, true, x0, y0, x1, y1, worker);
-}
-static __attribute__((noinline)) bool tile_narrow_cells(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1,
-                                                        TcWorker *worker) {
-  return render_tile(job, false, true, x0, y0, x1, y1, worker);
-}
+#define TILE(name, wide, cells)                                                                                                 \
+  static __attribute__((noinline)) bool name(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker) { \
+    return render_tile(job, wide, cells, x0, y0, x1, y1, worker);                                                               \
+  }
+TILE(tile_wide, true, false)
+TILE(tile_narrow, false, false)
+TILE(tile_wide_cells, true, true)
+TILE(tile_narrow_cells, false, true)
 
 bool PACKET_KERNEL(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker) {
   const bool wide = job->volume->vertices_are_double, cells = job->volume->association == TETCAST_CELL;
   if (cells) return (wide ? tile_wide_cells : tile_narrow_cells)(job, x0, y0, x1, y1, worker);
   return (wide ? tile_wide : tile_narrow)(job, x0, y0, x1, y1, worker);
+}
+
+bool PACKET_CAST(const TetcastVolume *volume, const TcPieces *pieces, const TcLine *line, int count, TcWorker *worker, TcLight *light) {
+  for (int begin = 0; begin < count; begin += TC_LANES) {
+    const int lanes = count - begin < TC_LANES ? count - begin : TC_LANES;
+    Lines lines;
+    TcLight part[TC_LANES];
+    int64_t steps;
+    for (int i = 0; i < TC_LANES; ++i) {
+      const TcLine *one = &line[begin + (i < lanes ? i : 0)];
+      for (int k = 0; k < 3; ++k) {
+        lines.eye[k][i] = one->eye[k];
+        lines.offset[k][i] = one->offset[k];
+        lines.direction[k][i] = one->direction[k];
+      }
+    }
+    const unsigned bits = (1U << lanes) - 1;
+    const bool cells = volume->association == TETCAST_CELL;
+    const bool ok = volume->vertices_are_double ? cast_packet(volume, true, cells, pieces, &lines, bits, worker, part, &steps)
+                                                : cast_packet(volume, false, cells, pieces, &lines, bits, worker, part, &steps);
+    if (!ok) return false;
+    memcpy(light + begin, part, (size_t)lanes * sizeof *light);
+  }
+  return true;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* walk.h for a packet of rays, a ray a lane. The signs that decide are those of rayspace.c, lane by lane; depths and values at faces may
- * differ from the scalar ones in the last bits, as products and sums are fused where the instruction set can. */
+/* walk.h for a packet of rays, a ray a lane: the same arithmetic in the same order, so the same bits. (Fused multiply-adds would save
+ * four operations of two hundred, and bias depths: over 10⁵ cells to 8e-14 of the optical depth in place of 6e-15.) */
 #ifndef TC_RENDER_PACKET_WALK_H
 #define TC_RENDER_PACKET_WALK_H
 
@@ -90,8 +90,8 @@ TC_INLINE void tc_edges(TcMask active, const TcPoints *const a[3], const TcPoint
 
 TC_INLINE void tc_crossings(const TcPoints v[3], const TcVec edge[3], TcVec *z, TcVec *s) {
   const TcVec inverse = 1 / (edge[0] + edge[1] + edge[2]);
-  *z = tc_madd(edge[1], v[0].z, tc_madd(edge[2], v[1].z, edge[0] * v[2].z)) * inverse;
-  *s = tc_madd(edge[1], v[0].s, tc_madd(edge[2], v[1].s, edge[0] * v[2].s)) * inverse;
+  *z = (edge[1] * v[0].z + edge[2] * v[1].z + edge[0] * v[2].z) * inverse;
+  *s = (edge[1] * v[0].s + edge[2] * v[1].s + edge[0] * v[2].s) * inverse;
 }
 
 TC_INLINE TcPoints tc_select_points(TcMask m, TcPoints a, TcPoints b) {

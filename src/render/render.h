@@ -73,6 +73,11 @@ TcKernel tc_kernel_baseline, tc_kernel_avx2, tc_kernel_avx512; /* exact, by pack
 typedef bool TcCast(const TetcastVolume *volume, const TcPieces *pieces, const TcLine *line, TcWorker *worker, TcLight *light);
 TcCast tc_cast, tc_cast_sampled;
 
+/* The same for `count` lines, any lines, by packets. */
+typedef bool TcPacketCast(const TetcastVolume *volume, const TcPieces *pieces, const TcLine *line, int count, TcWorker *worker,
+                          TcLight *light);
+TcPacketCast tc_packet_baseline, tc_packet_avx2, tc_packet_avx512;
+
 TetcastStatus tc_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **scene);
 void tc_scene_destroy(TetcastScene *scene);
 TetcastStatus tc_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer);

@@ -17,7 +17,7 @@ static void render(TetcastContext *context, const TetcastScene *scene, double to
   frame_desc.channels = TETCAST_CHANNEL_ERROR;
   TetcastFrame *frame = NULL;
   assert_int_equal(tetcast_frame_create(context, &frame_desc, &frame), TETCAST_OK);
-  TetcastRenderDesc desc = tetcast_render_desc_default();
+  TetcastRenderDesc desc = render_desc();
   desc.tolerance = tolerance;
   desc.samples = samples;
   TetcastRenderStats stats;
@@ -37,41 +37,6 @@ static void render(TetcastContext *context, const TetcastScene *scene, double to
   }
   assert_true(largest == stats.error);
   tetcast_frame_destroy(&frame);
-}
-
-static double power(uint64_t *seed, double low, double high) { return pow(10, low + (high - low) * uniform(seed)); }
-
-/* Some knots, some of them steps; extinctions of any strength next to each other, colours up to 1000, in some scenes bright ones behind
- * opaque ones. */
-static TetcastTransferFunction *random_transfer(TetcastContext *context, uint64_t *seed) {
-  double color[16][4], extinction[16][2];
-  int colors = 0, extinctions = 0;
-  const double brightest = uniform(seed) < 0.5 ? 0 : 3;
-  const double middle = -3 + 6 * uniform(seed), spread = 3 * uniform(seed);
-  double at = -0.1;
-  while (colors < 14 && at < 1.1) {
-    for (int twice = uniform(seed) < 0.2; twice >= 0; --twice, ++colors) {
-      color[colors][0] = at;
-      for (int k = 1; k < 4; ++k) color[colors][k] = uniform(seed) < 0.2 ? 0 : power(seed, brightest - 3, brightest);
-    }
-    at += 0.4 * uniform(seed);
-  }
-  at = 0;
-  while (extinctions < 14 && at < 1.1) {
-    for (int twice = uniform(seed) < 0.2; twice >= 0; --twice, ++extinctions) {
-      extinction[extinctions][0] = at;
-      extinction[extinctions][1] = uniform(seed) < 0.2 ? 0 : power(seed, middle - spread, middle + spread);
-    }
-    at += 0.3 * uniform(seed);
-  }
-  TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
-  desc.color = color[0];
-  desc.color_count = colors;
-  desc.extinction = extinction[0];
-  desc.extinction_count = extinctions;
-  TetcastTransferFunction *transfer = NULL;
-  assert_int_equal(tetcast_transfer_function_create(context, &desc, &transfer), TETCAST_OK);
-  return transfer;
 }
 
 static double largest_color(const TetcastTransferFunction *transfer) {

@@ -5,6 +5,7 @@
 
 #include <float.h>
 
+#include "base/cpu.h"
 #include "render/render.h"
 
 /* ── meshes ── */
@@ -106,6 +107,9 @@ typedef struct Caster {
   TetcastTransferFunction *gray;
   TcWorker worker;
   int64_t rays;
+  TcLine queue[TC_PACKET]; /* rays that go through the packet kernels together */
+  double queue_length[TC_PACKET];
+  int queued;
 } Caster;
 
 static void caster_begin(Caster *caster, const Soup *soup) {
@@ -120,12 +124,45 @@ static void caster_begin(Caster *caster, const Soup *soup) {
   }
   tetcast_field_destroy(&field);
   caster->gray = gray_of(caster->fixture.context, 1e-9); /* thin: nothing ends early, the depth is the length */
-  caster->worker.spans[0].context = caster->fixture.context;
+  for (int i = 0; i < TC_PACKET; ++i) caster->worker.spans[i].context = caster->fixture.context;
   caster->worker.tolerance = tc_tolerance_begin(&caster->gray->pieces, 0);
 }
 
+/* The queued rays by every packet kernel that this processor runs: the length inside is the scalar kernel's. */
+static void flush(Caster *caster) {
+  static const struct {
+    TetcastIsa isa;
+    TcPacketCast *cast;
+  } kernels[] = {
+#ifdef TC_HAVE_X86
+    {TETCAST_ISA_AVX512, tc_packet_avx512},
+    {TETCAST_ISA_AVX2, tc_packet_avx2},
+#endif
+    {TETCAST_ISA_BASELINE, tc_packet_baseline},
+  };
+  const TetcastVolume *volume = caster->volume[0];
+  const double *size = caster->soup->size, scale = fmax(size[0], fmax(size[1], size[2]));
+  for (size_t i = 0; i < sizeof kernels / sizeof *kernels; ++i) {
+    if (!tc_cpu_has(kernels[i].isa)) continue;
+    TcLight light[TC_PACKET];
+    caster->worker.lost = 0;
+    assert_true(kernels[i].cast(volume, &caster->gray->pieces, caster->queue, caster->queued, &caster->worker, light));
+    assert_int_equal(caster->worker.lost, 0);
+    for (int j = 0; j < caster->queued; ++j) {
+      const double length = ldexp(light[j].depth / 1e-9, volume->exponent);
+      assert_true(isfinite(length) && length >= 0);
+      if (caster->soup->disjoint && !(fabs(length - caster->queue_length[j]) <= 1e-13 * scale)) {
+        fail_msg("%s: kernel %d, lane %d: %.17g, scalar %.17g", caster->soup->name, (int)kernels[i].isa, j, length,
+                 caster->queue_length[j]);
+      }
+    }
+  }
+  caster->queued = 0;
+}
+
 static void caster_end(Caster *caster) {
-  tc_spans_clear(&caster->worker.spans[0]);
+  flush(caster);
+  for (int i = 0; i < TC_PACKET; ++i) tc_spans_clear(&caster->worker.spans[i]);
   tetcast_transfer_function_destroy(&caster->gray);
   for (int i = 0; i < 2; ++i) tetcast_volume_destroy(&caster->volume[i]);
   tetcast_mesh_destroy(&caster->mesh);
@@ -145,7 +182,13 @@ static double length_of(Caster *caster, int traversal, const double eye[3], cons
   double rgba[4];
   tc_light_end(&light, rgba);
   assert_true(isfinite(light.depth) && light.depth >= 0);
-  return ldexp(light.depth / 1e-9, volume->exponent);
+  const double length = ldexp(light.depth / 1e-9, volume->exponent);
+  if (traversal == 0) {
+    caster->queue_length[caster->queued] = length;
+    caster->queue[caster->queued++] = line;
+    if (caster->queued == TC_PACKET) flush(caster);
+  }
+  return length;
 }
 
 /* The part of the ray inside the box [0, size]³ made larger by `margin` on every side; long double. */

@@ -182,6 +182,50 @@ static inline TetcastTransferFunction *gray_of(TetcastContext *context, double k
   return transfer;
 }
 
+static inline double power(uint64_t *seed, double low, double high) { return pow(10, low + (high - low) * uniform(seed)); }
+
+/* Some knots, some of them steps; extinctions of any strength next to each other, colours up to 1000, in some scenes bright ones behind
+ * opaque ones. */
+static inline TetcastTransferFunction *random_transfer(TetcastContext *context, uint64_t *seed) {
+  double color[16][4], extinction[16][2];
+  int colors = 0, extinctions = 0;
+  const double brightest = uniform(seed) < 0.5 ? 0 : 3;
+  const double middle = -3 + 6 * uniform(seed), spread = 3 * uniform(seed);
+  double at = -0.1;
+  while (colors < 14 && at < 1.1) {
+    for (int twice = uniform(seed) < 0.2; twice >= 0; --twice, ++colors) {
+      color[colors][0] = at;
+      for (int k = 1; k < 4; ++k) color[colors][k] = uniform(seed) < 0.2 ? 0 : power(seed, brightest - 3, brightest);
+    }
+    at += 0.4 * uniform(seed);
+  }
+  at = 0;
+  while (extinctions < 14 && at < 1.1) {
+    for (int twice = uniform(seed) < 0.2; twice >= 0; --twice, ++extinctions) {
+      extinction[extinctions][0] = at;
+      extinction[extinctions][1] = uniform(seed) < 0.2 ? 0 : power(seed, middle - spread, middle + spread);
+    }
+    at += 0.3 * uniform(seed);
+  }
+  TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
+  desc.color = color[0];
+  desc.color_count = colors;
+  desc.extinction = extinction[0];
+  desc.extinction_count = extinctions;
+  TetcastTransferFunction *transfer = NULL;
+  assert_int_equal(tetcast_transfer_function_create(context, &desc, &transfer), TETCAST_OK);
+  return transfer;
+}
+
+/* The default description, with the instruction set that the environment variable TETCAST_TEST_ISA names by its number: the
+ * same test serves all kernels. */
+static inline TetcastRenderDesc render_desc(void) {
+  TetcastRenderDesc desc = tetcast_render_desc_default();
+  const char *isa = getenv("TETCAST_TEST_ISA");
+  if (isa) desc.isa = (TetcastIsa)atoi(isa);
+  return desc;
+}
+
 /* A picture of width × height doubles ×4 that the caller frees. */
 static inline double *picture(TetcastContext *context, const TetcastVolume *volume, const TetcastTransferFunction *transfer,
                               const TetcastCamera *camera, int width, int height, TetcastRenderStats *stats) {
@@ -196,7 +240,8 @@ static inline double *picture(TetcastContext *context, const TetcastVolume *volu
   assert_int_equal(tetcast_frame_create(context, &desc, &frame), TETCAST_OK);
   assert_int_equal(tetcast_scene_create(context, volume, &scene), TETCAST_OK);
   assert_int_equal(tetcast_scene_set_transfer_function(scene, transfer), TETCAST_OK);
-  assert_int_equal(tetcast_scene_render(scene, camera, NULL, frame, stats ? stats : &own), TETCAST_OK);
+  const TetcastRenderDesc render = render_desc();
+  assert_int_equal(tetcast_scene_render(scene, camera, &render, frame, stats ? stats : &own), TETCAST_OK);
   assert_int_equal((stats ? stats : &own)->lost, 0);
   tetcast_scene_destroy(&scene);
   tetcast_frame_destroy(&frame);
