@@ -17,4 +17,8 @@ if [ "${2:-}" = pictures ]; then
   for name in hydrogen heat trefoil shell; do
     "$tetcast" render --scene "$name.json" -o "$name.png"
   done
+  "$tetcast" converge hydrogen.vtu --repeat 9 -o "$work/report"
+  for name in time stiffness; do
+    cp "$work/report/$name.png" "converge-$name.png"
+  done
 fi

@@ -105,6 +105,31 @@ bool cli_file_check(const char *path) {
   return write_or_check(path, NULL);
 }
 
+CliText *cli_text_begin(void) {
+  CliText *text = cli_allocate(sizeof *text);
+  *text = (CliText){.file = NULL};
+  text->file = open_memstream(&text->memory, &text->size);
+  if (!text->file) {
+    cli_error("out of memory");
+    exit(CLI_FAILED);
+  }
+  return text;
+}
+
+bool cli_text_write(CliText *text, const char *folder, const char *name) {
+  char *path = folder ? cli_path_join(folder, name) : cli_duplicate(name);
+  const bool whole = !ferror(text->file);
+  bool done = fclose(text->file) == 0 && whole;
+  if (done)
+    done = cli_file_write(path, text->memory);
+  else
+    cli_error("cannot write '%s': out of memory", path);
+  free(path);
+  free(text->memory);
+  free(text);
+  return done;
+}
+
 char *cli_path_folder(const char *path) {
   const char *slash = strrchr(path, '/');
   if (!slash)

@@ -4,12 +4,25 @@
 #define TETCAST_CLI_FILE_H
 
 #include <stdbool.h>
+#include <stdio.h>
 
 /* Writes a text beside `path` and renames it; devices and pipes are written to directly. False after a message. */
 bool cli_file_write(const char *path, const char *text);
 
 /* Whether cli_file_write() could start: the folder is there and writable. False after a message. */
 bool cli_file_check(const char *path);
+
+/* A text that is put together in memory, by printing to `file`, before it is written. */
+typedef struct CliText {
+  FILE *file;
+  char *memory;
+  size_t size;
+} CliText;
+
+CliText *cli_text_begin(void);
+
+/* Writes it as a file of a folder (NULL: `name` is the whole path) and frees it. False after a message. */
+bool cli_text_write(CliText *text, const char *folder, const char *name);
 
 /* The following return memory for free(). */
 

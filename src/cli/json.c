@@ -60,42 +60,37 @@ json_t *cli_json_array(const double *values, int count) {
 }
 
 /* As people write it: a line for each key and each row of numbers. */
-static bool put(FILE *file, const json_t *value, int indent) {
-  bool done = true;
+static void put(FILE *file, const json_t *value, int indent) {
   if (json_is_object(value)) {
     const char *separator = "{";
     void *position = json_object_iter((json_t *)value);
-    for (; position && done; position = json_object_iter_next((json_t *)value, position)) {
+    for (; position; position = json_object_iter_next((json_t *)value, position)) {
       fprintf(file, "%s\n%*s\"%s\": ", separator, indent + 2, "", json_object_iter_key(position));
-      done = put(file, json_object_iter_value(position), indent + 2);
+      put(file, json_object_iter_value(position), indent + 2);
       separator = ",";
     }
     fprintf(file, "\n%*s}", indent, "");
   } else if (json_is_array(value) && json_is_array(json_array_get(value, 0))) {
-    for (size_t i = 0; i < json_array_size(value) && done; i++) {
+    for (size_t i = 0; i < json_array_size(value); i++) {
       fprintf(file, "%s\n%*s", i ? "," : "[", indent + 2, "");
-      done = put(file, json_array_get(value, i), indent + 2);
+      put(file, json_array_get(value, i), indent + 2);
     }
     fprintf(file, "\n%*s]", indent, "");
   } else {
     char *text = json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(17));
-    done = text && fputs(text, file) >= 0;
+    if (!text) {
+      cli_error("out of memory");
+      exit(CLI_FAILED);
+    }
+    fputs(text, file);
     free(text);
   }
-  return done;
 }
 
 bool cli_json_write(const char *path, json_t *object) {
-  char *text = NULL;
-  size_t size;
-  FILE *file = open_memstream(&text, &size);
-  bool done = file && put(file, object, 0) && fputc('\n', file) != EOF;
-  done = file && fclose(file) == 0 && done;
+  CliText *text = cli_text_begin();
+  put(text->file, object, 0);
+  fputc('\n', text->file);
   json_decref(object);
-  if (done)
-    done = cli_file_write(path, text);
-  else
-    cli_error("cannot write '%s': out of memory", path);
-  free(text);
-  return done;
+  return cli_text_write(text, NULL, path);
 }

@@ -15,6 +15,7 @@ static const char help_text[] = "Usage: tetcast COMMAND [options]\n"
                                 "\n"
                                 "Commands:\n"
                                 "  render INPUT   make a picture of a mesh file\n"
+                                "  converge INPUT measure error against run time, with plots\n"
                                 "  info INPUT     show what is in a mesh file\n"
                                 "  mesh SURFACE   fill a closed surface with tetrahedra\n"
                                 "\n"
@@ -36,12 +37,15 @@ int main(int argc, char **argv) {
   static const struct {
     const char *name;
     int (*run)(int argc, char **argv);
-  } commands[] = {{"render", tetcast_cli_render}, {"info", tetcast_cli_info}, {"mesh", tetcast_cli_mesh}};
+  } commands[] = {{"render", tetcast_cli_render},
+                  {"converge", tetcast_cli_converge},
+                  {"info", tetcast_cli_info},
+                  {"mesh", tetcast_cli_mesh}};
 
   cli_interrupt_catch();
   opterr = 0;
   if (argc < 2)
-    return cli_usage_error("", "no command given: render, info or mesh");
+    return cli_usage_error("", "no command given: render, converge, info or mesh");
   const char *word = argv[1];
   for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
     if (!strcmp(word, commands[i].name))

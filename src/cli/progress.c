@@ -53,8 +53,7 @@ static struct {
   bool visible;
 } bar;
 
-static bool advance(void *user, double fraction) {
-  (void)user;
+bool cli_progress_show(double fraction) {
   const double now = cli_seconds();
   if (bar.label && now - bar.started > 1 && now - bar.drawn > 0.1) {
     char cells[BAR_WIDTH + 1];
@@ -67,6 +66,11 @@ static bool advance(void *user, double fraction) {
     bar.visible = true;
   }
   return caught == 0;
+}
+
+static bool advance(void *user, double fraction) {
+  (void)user;
+  return cli_progress_show(fraction);
 }
 
 TetcastProgress cli_progress(const char *label) {

@@ -19,6 +19,9 @@ int cli_interrupted(void);
  * than about a second and the command is not quiet, and that cancels the work after a signal. */
 TetcastProgress cli_progress(const char *label);
 
+/* Draws the bar of the last cli_progress(), for work of several calls with one bar. False after a signal. */
+bool cli_progress_show(double fraction);
+
 /* Removes the bar; messages do so before they print. */
 void cli_progress_clear(void);
 

@@ -8,7 +8,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
+#include <tetcast/image.h>
 #include <tetcast/transfer_function.h>
 
 #include "cli.h"
@@ -33,6 +35,7 @@ static const struct {
   double low, high;         /* bounds of each */
   const char *const *names; /* of a choice */
   uint32_t excludes;
+  RenderCommand only; /* of this command alone, 0: of both */
   const char *form; /* what is expected */
 } table[OPTION_COUNT] = {
     [OPTION_INPUT] = {"input", KIND_PATH, AT(input), .form = "expected a path"},
@@ -57,11 +60,14 @@ static const struct {
     [OPTION_SIZE] = {"size", KIND_INTEGERS, AT(size), 2, 2, 1, 1 << 20,
                      .form = "expected WxH: whole numbers from 1 to 1048576, no more than 2^30 pixels"},
     [OPTION_SAMPLES] = {"samples", KIND_INTEGERS, AT(samples), 1, 1, 1, 65536,
-                        .form = "expected a whole number from 1 to 65536"},
+                        .only = COMMAND_RENDER, .form = "expected a whole number from 1 to 65536"},
     [OPTION_BACKGROUND] = {"background", KIND_NUMBERS, AT(background), 3, 4, 0, 1,
-                           .form = "expected r,g,b or r,g,b,a from 0 to 1"},
+                           .only = COMMAND_RENDER, .form = "expected r,g,b or r,g,b,a from 0 to 1"},
     [OPTION_INTEGRATOR] = {"integrator", KIND_TEXT, AT(integrator),
-                           .form = "expected exact, midpoint:N, trapezoid:N, gauss:N (N to 16) or table:N (N from 2 to 4096)"},
+                           .only = COMMAND_RENDER, .form = "expected exact, midpoint:N, trapezoid:N, gauss:N (N to 16) or table:N (N from 2 to 4096)"},
+    [OPTION_TOLERANCE] = {"tolerance", KIND_NUMBERS, AT(tolerance), 1, 1, 0, DBL_MAX, .only = COMMAND_RENDER,
+                          .form = "expected a number, 0 or above"},
+    [OPTION_CHANNELS] = {"channels", KIND_TEXT, AT(channels), .only = COMMAND_RENDER, .form = "expected error"},
     [OPTION_TRAVERSAL] = {"traversal", KIND_CHOICE, AT(traversal), .names = traversals,
                           .form = "expected shell or faces"},
     [OPTION_THREADS] = {"threads", KIND_INTEGERS, AT(threads), 1, 1, 0, 4096,
@@ -69,15 +75,31 @@ static const struct {
     [OPTION_REPEAT] = {"repeat", KIND_INTEGERS, AT(repeat), 1, 1, 1, 1e6,
                        .form = "expected a whole number from 1 to 1000000"},
     [OPTION_PIXEL_TYPE] = {"pixel-type", KIND_CHOICE, AT(pixel_type), .names = pixel_types,
-                           .form = "expected uint8, uint16, half, float or double"},
-    [OPTION_STATS] = {"stats", KIND_PATH, AT(stats), .form = "expected a path"},
+                           .only = COMMAND_RENDER, .form = "expected uint8, uint16, half, float or double"},
+    [OPTION_STATS] = {"stats", KIND_PATH, AT(stats), .only = COMMAND_RENDER, .form = "expected a path"},
     [OPTION_SCENE] = {"scene", KIND_PATH, AT(scene), .form = "expected a path"},
-    [OPTION_SAVE_SCENE] = {"save-scene", KIND_PATH, AT(save_scene), .form = "expected a path"},
-    [OPTION_QUIET] = {"quiet", KIND_FLAG, AT(quiet), .low = 0, .high = 1, .form = "expected true or false"},
+    [OPTION_SAVE_SCENE] = {"save-scene", KIND_PATH, AT(save_scene), .only = COMMAND_RENDER, .form = "expected a path"},
+    [OPTION_QUIET] = {"quiet", KIND_FLAG, AT(quiet), .form = "expected true or false"},
+    [OPTION_REFINE] = {"refine", KIND_FLAG, AT(refine), .only = COMMAND_CONVERGE},
+    [OPTION_NO_PLOTS] = {"no-plots", KIND_FLAG, AT(no_plots), .only = COMMAND_CONVERGE},
 };
 
-RenderOptions render_options_default(void) {
-  return (RenderOptions){.size = {1024, 768}, .samples = 1, .background = {1, 1, 1, 1}, .repeat = 1};
+static bool of_command(OptionId id, RenderCommand command) {
+  return !table[id].only || table[id].only == command;
+}
+
+static const char *command_name(const RenderOptions *options) {
+  return options->command == COMMAND_RENDER ? "render" : "converge";
+}
+
+RenderOptions render_options_default(RenderCommand command) {
+  RenderOptions options = {.command = command, .size = {1024, 768}, .samples = 1, .background = {1, 1, 1, 1}, .repeat = 1};
+  if (command == COMMAND_CONVERGE) {
+    options.size[0] = 256;
+    options.size[1] = 192;
+    options.repeat = 3;
+  }
+  return options;
 }
 
 void render_options_release(RenderOptions *options) {
@@ -95,7 +117,7 @@ OptionId render_option_find(const char *key) {
       b++;
     }
     if (!*a && !*b)
-      return (OptionId)id;
+      return of_command((OptionId)id, COMMAND_RENDER) ? (OptionId)id : OPTION_COUNT;
   }
   return OPTION_COUNT;
 }
@@ -148,6 +170,59 @@ bool render_option_integrator(const char *text, TetcastIntegrator *integrator, i
   return false;
 }
 
+uint32_t render_option_channels(const char *text) {
+  uint32_t channels = 0;
+  for (;;) {
+    const size_t length = strcspn(text, ",");
+    if (length != strlen("error") || strncmp(text, "error", length) || channels & TETCAST_CHANNEL_ERROR)
+      return 0;
+    channels |= TETCAST_CHANNEL_ERROR;
+    if (!text[length])
+      return channels;
+    text += length + 1;
+  }
+}
+
+static bool has_extension(const char *path, const char *extension) {
+  const size_t length = strlen(path), tail = strlen(extension);
+  return length > tail && !strcasecmp(path + length - tail, extension);
+}
+
+static bool is_tiff(const char *path) {
+  return has_extension(path, ".tif") || has_extension(path, ".tiff");
+}
+
+bool render_options_floating(const RenderOptions *options) {
+  if (options->pixel_type != TETCAST_PIXEL_DEFAULT)
+    return options->pixel_type >= TETCAST_PIXEL_HALF;
+  return options->output &&
+         (has_extension(options->output, ".exr") || is_tiff(options->output) || has_extension(options->output, ".hdr"));
+}
+
+/* What is wrong with options that are in order one by one (for free()), NULL: nothing. */
+static char *find_fault(const RenderOptions *options) {
+  const char *view = view_fault(options);
+  if (view)
+    return cli_duplicate(view);
+  TetcastIntegrator integrator = TETCAST_INTEGRATOR_EXACT;
+  int n;
+  if (options->integrator)
+    render_option_integrator(options->integrator, &integrator, &n);
+  if (integrator != TETCAST_INTEGRATOR_EXACT && (options->tolerance > 0 || options->channels))
+    return cli_print("%s: only the exact integrator knows its error, not %s",
+                     options->channels ? "--channels error" : "--tolerance", options->integrator);
+  if (!options->channels)
+    return NULL;
+  const char *output = options->output ? options->output : ".png";
+  if (!has_extension(output, ".exr") && !is_tiff(output))
+    return cli_print("--channels %s: only .exr and .tif hold more channels than colour and alpha, not %s", options->channels,
+                     options->output ? output : "the default, a .png");
+  return render_options_floating(options)
+           ? NULL
+           : cli_print("--channels %s: needs floating-point pixels, not %s", options->channels,
+                       render_option_choice(OPTION_PIXEL_TYPE, options->pixel_type));
+}
+
 static const char *set_numbers(OptionId id, void *at, const OptionValue *value) {
   const double *numbers = value->numbers;
   if (value->text || value->count < table[id].least || value->count > table[id].most)
@@ -184,7 +259,7 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
   case KIND_CHOICE:
     return set_choice(id, at, value);
   case KIND_FLAG:
-    options->quiet = value->count == 1 && value->numbers[0] != 0;
+    *(int *)at = value->count == 1 && value->numbers[0] != 0;
     return NULL;
   default:
     if (!value->text || !*value->text)
@@ -193,6 +268,8 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
     int n;
     const char *reason = id == OPTION_PRESET ? set_preset_name(value->text) : NULL;
     if (id == OPTION_INTEGRATOR && !render_option_integrator(value->text, &integrator, &n))
+      reason = table[id].form;
+    if (id == OPTION_CHANNELS && !render_option_channels(value->text))
       reason = table[id].form;
     if (!reason) {
       char **text = at;
@@ -218,9 +295,9 @@ static int set_from_text(RenderOptions *options, OptionId id, const char *text) 
   }
   const char *other = render_options_claim(options, id);
   if (other)
-    return cli_usage_error("render", "--%s and --%s exclude each other", table[id].name, other);
+    return cli_usage_error(command_name(options), "--%s and --%s exclude each other", table[id].name, other);
   const char *reason = render_options_set(options, id, &value);
-  return reason ? cli_usage_error("render", "--%s %s: %s", table[id].name, text, reason) : -1;
+  return reason ? cli_usage_error(command_name(options), "--%s %s: %s", table[id].name, text, reason) : -1;
 }
 
 /* The words of the command line; with `scene_only` everything but the options --scene and --help is left for later. */
@@ -229,7 +306,7 @@ static int parse_words(RenderOptions *options, int argc, char **argv, bool scene
   struct option words[OPTION_COUNT + 2];
   int count = 0;
   for (int id = 0; id < OPTION_COUNT; id++)
-    if (id != OPTION_INPUT)
+    if (id != OPTION_INPUT && of_command((OptionId)id, options->command))
       words[count++] = (struct option){table[id].name, table[id].kind == KIND_FLAG ? no_argument : required_argument,
                                        NULL, LONG + id};
   words[count++] = (struct option){"help", no_argument, NULL, HELP};
@@ -239,9 +316,9 @@ static int parse_words(RenderOptions *options, int argc, char **argv, bool scene
   int code;
   while ((code = getopt_long(argc, argv, ":ho:", words, NULL)) != -1) {
     if (code == '?' || code == ':')
-      return cli_bad_option("render", code, argv);
+      return cli_bad_option(command_name(options), code, argv);
     if (code == HELP) {
-      fputs(render_help, stdout);
+      fputs(options->command == COMMAND_RENDER ? render_help : converge_help, stdout);
       return cli_finish_output();
     }
     const OptionId id = code == OUTPUT ? OPTION_OUTPUT : (OptionId)(code - LONG);
@@ -255,11 +332,51 @@ static int parse_words(RenderOptions *options, int argc, char **argv, bool scene
     return -1;
   for (int i = optind; i < argc; i++) {
     if (i > optind)
-      return cli_usage_error("render", "more than one input: '%s' and '%s'", argv[optind], argv[i]);
+      return cli_usage_error(command_name(options), "more than one input: '%s' and '%s'", argv[optind], argv[i]);
     const int result = set_from_text(options, OPTION_INPUT, argv[i]);
     if (result >= 0)
       return result;
   }
+  return -1;
+}
+
+/* A scene file states a picture; what converge takes of it is what is seen, at its own size but in the shape of the picture. */
+static void take_scene(RenderOptions *options) {
+  if (options->command == COMMAND_RENDER)
+    return;
+  const RenderOptions standard = render_options_default(options->command);
+  if (render_options_given(options, OPTION_SIZE)) {
+    const double pixels = standard.size[0] * standard.size[1];
+    const double aspect = options->size[0] / options->size[1];
+    options->size[0] = fmin(fmax(round(sqrt(pixels * aspect)), 1), 1 << 20);
+    options->size[1] = fmin(fmax(round(sqrt(pixels / aspect)), 1), 1 << 20);
+  }
+  options->repeat = standard.repeat;
+  for (int id = 0; id < OPTION_COUNT; id++)
+    if (id == OPTION_OUTPUT || !of_command((OptionId)id, options->command)) {
+      options->given &= ~BIT(id);
+      if (table[id].kind == KIND_TEXT || table[id].kind == KIND_PATH) {
+        char **text = (char **)((char *)options + table[id].at);
+        free(*text);
+        *text = NULL;
+      }
+    }
+  options->tolerance = standard.tolerance;
+}
+
+/* What of the command line is missing or has no use. -1: nothing, else the exit code. */
+static int check_use(const RenderOptions *options) {
+  if (options->command == COMMAND_CONVERGE && !options->output)
+    return cli_usage_error("converge", "no folder for the report given: -o REPORTDIR");
+  if (options->input)
+    return -1;
+  if (!options->refine)
+    return cli_usage_error(command_name(options), "no input given");
+  const uint32_t used = BIT(OPTION_OUTPUT) | BIT(OPTION_THREADS) | BIT(OPTION_QUIET) | BIT(OPTION_REFINE) |
+                        BIT(OPTION_NO_PLOTS);
+  for (int id = 0; id < OPTION_COUNT; id++)
+    if (options->given & ~used & BIT(id))
+      return cli_usage_error("converge", "--%s needs an input: --refine has a scene of its own", table[id].name);
   return -1;
 }
 
@@ -269,16 +386,20 @@ int render_options_parse(RenderOptions *options, int argc, char **argv) {
     options->source = 0;
     if (!scene_file_read(options))
       return CLI_FAILED;
+    take_scene(options);
   }
   options->source = 0;
   if (result < 0)
     result = parse_words(options, argc, argv, false);
-  if (result < 0 && !options->input)
-    return cli_usage_error("render", "no input given");
-  const char *fault = result < 0 ? view_fault(options) : NULL;
+  if (result < 0)
+    result = check_use(options);
+  char *fault = result < 0 ? find_fault(options) : NULL;
   if (fault && options->scene) {
     cli_error("%s", fault);
-    return CLI_FAILED;
+    result = CLI_FAILED;
+  } else if (fault) {
+    result = cli_usage_error(command_name(options), "%s", fault);
   }
-  return fault ? cli_usage_error("render", "%s", fault) : result;
+  free(fault);
+  return result;
 }

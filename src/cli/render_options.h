@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a picture is made of, from the command line and from a scene file: one table, one check of values for both. */
+/* What a picture is made of, from the command line and from a scene file: one table, one check of values for both, and
+ * for both commands that render. */
 #ifndef TETCAST_CLI_RENDER_OPTIONS_H
 #define TETCAST_CLI_RENDER_OPTIONS_H
 
@@ -27,6 +28,8 @@ typedef enum OptionId {
   OPTION_SAMPLES,
   OPTION_BACKGROUND,
   OPTION_INTEGRATOR,
+  OPTION_TOLERANCE,
+  OPTION_CHANNELS,
   OPTION_TRAVERSAL,
   OPTION_THREADS,
   OPTION_REPEAT,
@@ -35,15 +38,21 @@ typedef enum OptionId {
   OPTION_SCENE,
   OPTION_SAVE_SCENE,
   OPTION_QUIET,
+  OPTION_REFINE,
+  OPTION_NO_PLOTS,
   OPTION_COUNT
 } OptionId;
 
+typedef enum RenderCommand { COMMAND_RENDER = 1, COMMAND_CONVERGE = 2 } RenderCommand;
+
 typedef struct RenderOptions {
-  char *input, *output, *array, *transfer, *preset, *integrator, *stats, *scene, *save_scene; /* NULL unless given */
+  RenderCommand command;
+  /* NULL unless given */
+  char *input, *output, *array, *transfer, *preset, *integrator, *channels, *stats, *scene, *save_scene;
   json_t *transfer_object; /* of a scene file; instead of transfer */
-  double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], threads, repeat;
+  double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], tolerance, threads, repeat;
   int opacity_model, traversal, pixel_type; /* values of the library's enumerations */
-  int quiet;
+  int quiet, refine, no_plots;
   uint32_t given;  /* bit 1 << OptionId: has a value from command line or scene file */
   uint32_t source; /* the same for the source being read alone */
 } RenderOptions;
@@ -55,14 +64,14 @@ typedef struct OptionValue {
   double numbers[4];
 } OptionValue;
 
-RenderOptions render_options_default(void);
+RenderOptions render_options_default(RenderCommand command);
 void render_options_release(RenderOptions *options);
 
 static inline bool render_options_given(const RenderOptions *options, OptionId id) {
   return options->given >> id & 1;
 }
 
-/* The option of a key, e.g. "pixel_type" or "pixel-type"; OPTION_COUNT: none. */
+/* The option of a scene file's key, e.g. "pixel_type" or "pixel-type"; OPTION_COUNT: none. */
 OptionId render_option_find(const char *key);
 bool render_option_is_path(OptionId id);
 
@@ -71,6 +80,12 @@ const char *render_option_choice(OptionId id, int value);
 
 /* What --integrator names: "exact", or "midpoint:4" and the like. False: neither. */
 bool render_option_integrator(const char *text, TetcastIntegrator *integrator, int *n);
+
+/* The TetcastChannel bits of a list as --channels has it, 0: there is something else in it. */
+uint32_t render_option_channels(const char *text);
+
+/* Whether the pixels of options->output will be floating-point, which hold no background. */
+bool render_options_floating(const RenderOptions *options);
 
 /* Sets an option. NULL, or why the value can't be (static storage or inside the options). */
 const char *render_options_set(RenderOptions *options, OptionId id, const OptionValue *value);
@@ -82,6 +97,6 @@ const char *render_options_claim(RenderOptions *options, OptionId id);
 /* Reads the command line and the scene file it names. -1 to go on, else the exit code. */
 int render_options_parse(RenderOptions *options, int argc, char **argv);
 
-extern const char render_help[];
+extern const char render_help[], converge_help[];
 
 #endif

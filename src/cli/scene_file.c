@@ -142,6 +142,10 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
   json_object_set_new(scene, "background", cli_json_array(options->background, 4));
   if (options->integrator)
     json_object_set_new(scene, "integrator", json_string(options->integrator));
+  if (options->tolerance > 0)
+    json_object_set_new(scene, "tolerance", json_real(options->tolerance));
+  if (options->channels)
+    json_object_set_new(scene, "channels", json_string(options->channels));
   json_object_set_new(scene, "traversal", json_string(render_option_choice(OPTION_TRAVERSAL, options->traversal)));
   if (options->pixel_type)
     json_object_set_new(scene, "pixel_type", json_string(render_option_choice(OPTION_PIXEL_TYPE, options->pixel_type)));

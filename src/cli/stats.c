@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "stats.h"
 
+#include <math.h>
 #include <sys/resource.h>
 
 #include "json.h"
@@ -15,6 +16,8 @@ bool stats_write(const char *path, const RunStats *stats) {
   json_object_set_new(object, "write_seconds", json_real(stats->write_seconds));
   json_object_set_new(object, "rays", json_integer(stats->render.rays));
   json_object_set_new(object, "segments", json_integer(stats->render.segments));
+  json_object_set_new(object, "tolerance", json_real(stats->tolerance));
+  json_object_set_new(object, "error", isfinite(stats->render.error) ? json_real(stats->render.error) : json_null());
   json_object_set_new(object, "peak_rss_bytes",
                       json_integer((json_int_t)usage.ru_maxrss * 1024)); /* Linux counts in KiB */
   json_object_set_new(object, "volume_bytes", json_integer((json_int_t)stats->volume.bytes));

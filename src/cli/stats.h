@@ -8,6 +8,7 @@
 
 typedef struct RunStats {
   double read_seconds, prepare_seconds, write_seconds;
+  double tolerance;
   double *render_seconds; /* [repeats] */
   int repeats, threads;
   TetcastRenderStats render; /* of one frame */

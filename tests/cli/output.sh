@@ -54,6 +54,23 @@ same ospray.tif opacity.tif 'opacity model'
 warn '--opacity-model has no effect' \
   render cube.vtu -o a.png --size 9x9 --transfer extinction.json --opacity-model ospray
 
+# A tolerance, and what the renderer says about the error: one more channel, and a number.
+accept render cube.vtu -o exact.tif --size 61x47 --pixel-type double --tolerance 0 --integrator exact --stats exact.json
+same one.tif exact.tif 'tolerance 0'
+for tolerance in 0 1e-6 0.01; do
+  accept render cube.vtu -o loose.exr --size 61x47 --tolerance $tolerance --channels error --pixel-type float --stats loose.json
+  bound=$(sed -n 's/.*"error": \([0-9.e-]*\),.*/\1/p' loose.json)
+  awk "BEGIN { exit !($bound > 0 && $bound <= $tolerance + 1e-6) }" || fail "error $bound at the tolerance $tolerance"
+done
+awk "BEGIN { exit !($bound > 1e-6) }" || fail "error $bound: the tolerance 0.01 is not used"
+grep -q '"tolerance": 0.01,' loose.json || fail "tolerance: $(cat loose.json)"
+accept render cube.vtu -o plain.exr --size 61x47 --pixel-type float
+head -c 400 loose.exr | grep -qaw error || fail 'no channel "error"'
+if head -c 400 plain.exr | grep -qaw error; then fail 'a channel "error" that nobody asked for'; fi
+accept render cube.vtu -o a.tif --size 9x9 --channels error
+accept render cube.vtu -o a.tif --size 9x9 --integrator midpoint:2 --stats other.json
+grep -q '"error": null' other.json || fail 'another integrator states an error'
+
 # Values that are not finite.
 scalar='0 1 nan 2 3 4 6 5' vtu nan.vtu "$five_tetrahedra" 10
 warn 'NaN' render nan.vtu -o nan.png --size 40x30

@@ -22,6 +22,10 @@ round_trip --array v:1 --preset inferno --range 0.1,0.7
 round_trip --array 'c d' --transfer data/t.json
 round_trip --transfer data/t.json --opacity-model ospray
 round_trip --integrator gauss:2
+round_trip --tolerance 0.003 --channels error
+output=$(cat scenes/deep/s.json)
+contains '"tolerance": 0.003'
+contains '"channels": "error"'
 round_trip --eye 3,1.1,2 --fovy 17.3
 round_trip --ortho 1.7 --up 0,0,1 --background 0.1,0.2,0.3,0.4 --quiet
 round_trip --eye 0.5,0.5,0.5 --target 1,0.3,0.2 --up 1,1,1
@@ -52,6 +56,13 @@ same q.png r.png '--preset over transfer'
 accept render --scene p.json --transfer data/t.json -o q.png
 accept render data/cube.vtu -o r.png --size 53x37 --background 0.2,0.1,0 --transfer data/t.json
 same q.png r.png '--transfer over transfer'
+
+# Together they must make sense, wherever each comes from.
+accept render data/cube.vtu -o e.exr --size 9x9 --channels error --tolerance 1e-3 --save-scene e.json
+refuse 1 'only .exr and .tif' render --scene e.json -o q.png
+refuse 1 'only the exact integrator' render --scene e.json --integrator midpoint:3
+echo '{"input": "data/cube.vtu", "refine": true}' >r.json
+refuse 1 "unknown key 'refine'" render --scene r.json
 
 # Written by hand, with paths relative to the file, in either spelling.
 cat >scenes/hand.json <<END

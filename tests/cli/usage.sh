@@ -8,7 +8,7 @@ contains 'Embree [34]\.'
 contains 'adapters:'
 accept --help
 contains 'render'
-for command in render info mesh; do
+for command in render converge info mesh; do
   accept $command --help
   contains "Usage: tetcast $command"
   contains 'Example'
@@ -57,6 +57,17 @@ refuse 2 'vtk-unstructured' render a.vtu --opacity-model vtk
 for integrator in exact:2 midpoint midpoint: midpoint:0 midpoint:1.5 gauss:17 table:1 table:x simpson:3; do
   refuse 2 'gauss:N' render a.vtu --integrator "$integrator"
 done
+for tolerance in -1 x inf 1,2 ''; do refuse 2 '0 or above' render a.vtu --tolerance "$tolerance"; done
+for channels in depth '' error,error error,depth ,error; do
+  refuse 2 'expected error' render a.vtu -o a.exr --channels "$channels"
+done
+refuse 2 'not the default, a .png' render a.vtu --channels error
+for name in a.png a.jpg a.hdr error; do refuse 2 "not $name" render a.vtu -o $name --channels error; done
+for type in uint8 uint16; do
+  refuse 2 "floating-point pixels, not $type" render a.vtu -o a.tif --channels error --pixel-type $type
+done
+refuse 2 'only the exact integrator' render a.vtu -o a.exr --channels error --integrator midpoint:1
+refuse 2 'only the exact integrator' render a.vtu --tolerance 1e-3 --integrator gauss:3
 refuse 2 'exclude each other' render a.vtu --fovy 30 --ortho 1
 refuse 2 'exclude each other' render a.vtu --transfer t.json --preset viridis
 refuse 2 'exclude each other' render a.vtu --range 0,1 --transfer t.json

@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the studies of convergence share: rows, timing, errors, slopes. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli.h"
+#include "converge.h"
+#include "progress.h"
+
+ConvergeRow *converge_plan(Converge *converge, ConvergeRow row) {
+  if (converge->count == converge->capacity) {
+    converge->capacity = converge->capacity ? 2 * converge->capacity : 128;
+    ConvergeRow *more = cli_allocate(sizeof *more * (size_t)converge->capacity);
+    if (converge->count)
+      memcpy(more, converge->rows, sizeof *more * (size_t)converge->count);
+    free(converge->rows);
+    converge->rows = more;
+  }
+  converge->rows[converge->count] = row;
+  return &converge->rows[converge->count++];
+}
+
+static bool advance(void *user, double fraction) {
+  const Converge *converge = user;
+  return cli_progress_show((converge->done + converge->step * fraction) / converge->work);
+}
+
+TetcastProgress converge_progress(Converge *converge, double weight) {
+  converge->done += converge->step;
+  converge->step = weight;
+  return (TetcastProgress){.function = advance, .user = converge};
+}
+
+/* Takes one more time into the row. */
+static void add_time(ConvergeRow *row, double seconds) {
+  if (!row->times)
+    row->times = cli_allocate(sizeof *row->times * (size_t)row->repeats);
+  int at = row->timed++;
+  for (; at > 0 && row->times[at - 1] > seconds; at--)
+    row->times[at] = row->times[at - 1];
+  row->times[at] = seconds;
+  row->seconds = (row->times[(row->timed - 1) / 2] + row->times[row->timed / 2]) / 2;
+}
+
+TetcastStatus converge_render(Converge *converge, const TetcastScene *scene, const TetcastCamera *camera,
+                              TetcastFrame *frame, ConvergeRow *row, double weight) {
+  TetcastRenderDesc desc = tetcast_render_desc_default();
+  desc.integrator = row->integrator;
+  if (row->n > 0)
+    desc.integrator_n = row->n;
+  desc.tolerance = row->tolerance;
+  desc.progress = converge_progress(converge, weight);
+  TetcastRenderStats stats;
+  const double start = cli_seconds();
+  const TetcastStatus status = tetcast_scene_render(scene, camera, &desc, frame, &stats);
+  if (status != TETCAST_OK || cli_interrupted())
+    return status == TETCAST_OK ? TETCAST_ERROR_CANCELLED : status;
+  add_time(row, cli_seconds() - start);
+  row->segments = stats.segments;
+  row->precision = stats.precision;
+  row->bound = row->integrator == TETCAST_INTEGRATOR_EXACT ? stats.error : (double)NAN;
+  converge->isa = stats.isa;
+  converge->lost += stats.lost;
+  return TETCAST_OK;
+}
+
+void converge_compare(ConvergeRow *row, const double *picture, const double *truth, int64_t count) {
+  double largest = 0, squares = 0;
+  bool finite = true;
+  for (int64_t i = 0; i < count; i++) {
+    const double error = fabs(picture[i] - truth[i]);
+    finite = finite && isfinite(error);
+    largest = fmax(largest, error);
+  }
+  for (int64_t i = 0; i < count && largest > 0; i++) { /* relative to the largest: squares may overflow and underflow */
+    const double part = (picture[i] - truth[i]) / largest;
+    squares += part * part;
+  }
+  row->max_error = finite ? largest : (double)INFINITY;
+  row->rms_error = finite ? largest * sqrt(squares / (double)count) : (double)INFINITY;
+}
+
+const char *converge_name(const ConvergeRow *row) {
+  static const char *const names[] = {"exact", "midpoint", "trapezoid", "gauss", "table"};
+  return row->tolerance > 0 ? "tolerance" : names[row->integrator];
+}
+
+double converge_slope(const Converge *converge, ConvergeStudy study, TetcastIntegrator integrator, bool rms) {
+  const double clear = 1e-13; /* of rounding */
+  const int least = study != STUDY_TIME ? 0 : integrator == TETCAST_INTEGRATOR_TABLE ? 16 : 4;
+  int count = 0;
+  double x1 = 0, y1 = 0, xx = 0, xy = 0;
+  for (int i = 0; i < converge->count; i++) {
+    const ConvergeRow *row = &converge->rows[i];
+    const double error = rms ? row->rms_error : row->max_error;
+    if (row->study != study || row->integrator != integrator || row->tolerance > 0 || row->n < least ||
+        !(error > clear))
+      continue;
+    const double x = study == STUDY_TIME ? log(row->n) : -log(row->level), y = log(error);
+    count++;
+    x1 += x;
+    y1 += y;
+    xx += x * x;
+    xy += x * y;
+  }
+  const double spread = count * xx - x1 * x1;
+  return count < 2 || !(spread > 0) ? (double)NAN : (count * xy - x1 * y1) / spread;
+}
