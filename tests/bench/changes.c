@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "jobs.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* ── memory ── */
+
+void job_memory(const Job *job) {
+  Row row = job->row;
+  row.task = "memory";
+  row.renderer = "tetcast";
+  row.threads = 2;
+  Tet tet;
+  tet_open(&tet, job->mesh, row.threads);
+  double before = peak_bytes();
+  tet_prepare(&tet);
+  row.peak = peak_bytes() - before;
+  TetcastVolumeInfo info;
+  tetcast_volume_info(tet.volume, &info);
+  row.resident = (double)info.bytes;
+  row.shell_faces = info.shell_faces;
+  row_write(&row);
+  tet_close(&tet);
+}
+
+void job_memory_vtk(const Job *job) {
+  const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
+  Row row = job->row;
+  row.task = "memory";
+  row.renderer = "VTK";
+  row.threads = 1;
+  Caster *caster = caster_create(job->mesh);
+  double before = peak_bytes();
+  must(caster && caster_view(caster, &camera, job->options->pixels, job->options->pixels), "VTK has no memory");
+  row.peak = peak_bytes() - before;
+  row_write(&row);
+  caster_destroy(caster);
+}
+
+/* ── another transfer function ── */
+
+/* What a change costs: setting it, and by how much the next picture, a small one, takes longer than the one after that. */
+static void change(const Job *job, Tet *tet, const char *what, const Transfer *from, const Transfer *to, int threads) {
+  enum { SMALL = 32 };
+  const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
+  Row row = job->row;
+  row.task = "transfer function";
+  row.what = what;
+  row.renderer = "tetcast exact";
+  row.threads = threads;
+  must(tetcast_context_set_threads(tet->context, threads) == TETCAST_OK, "threads");
+  TetcastFrame *frame = tet_frame(tet, SMALL, TETCAST_TYPE_FLOAT64, 0);
+  Times all = {0};
+  for (int round = 0; round < job->scene->rounds; round++) {
+    tet_transfer(tet, from);
+    tet_render(tet, &camera, NULL, frame, NULL);
+    Clock set = tet_transfer(tet, to);
+    Clock first = tet_render(tet, &camera, NULL, frame, NULL);
+    Clock later = measure_frame(job, tet, &camera, NULL, frame, NULL);
+    times_add(&all, (Clock){.wall = set.wall + fmax(0, first.wall - later.wall), .cpu = set.cpu + fmax(0, first.cpu - later.cpu)});
+  }
+  row.times = &all;
+  row_write(&row);
+  tetcast_frame_destroy(&frame);
+}
+
+void job_visible(const Job *job) {
+  const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
+  const double threshold = scene_threshold(job->mesh, 0.01);
+  must(!isnan(threshold), "no memory");
+  const Transfer everything = transfer_above(-0.5), few = transfer_above(threshold);
+  Tet tet;
+  tet_open(&tet, job->mesh, 2);
+  tet_prepare(&tet);
+  for (int threads = 1; threads <= 2; threads++) {
+    change(job, &tet, "all visible before and after", &transfer_soft, &transfer_softer, threads);
+    change(job, &tet, "from all visible to 1 %", &everything, &few, threads);
+    change(job, &tet, "from 1 % visible to all", &few, &everything, threads);
+  }
+
+  must(tetcast_context_set_threads(tet.context, 1) == TETCAST_OK, "threads");
+  Times times[2] = {0};
+  TetcastRenderStats stats[2];
+  TetcastFrame *frame = tet_frame(&tet, job->options->pixels, TETCAST_TYPE_FLOAT64, 0);
+  for (int round = 0; round < job->scene->rounds; round++) {
+    for (int i = 0; i < 2; i++) {
+      tet_transfer(&tet, i == 0 ? &everything : &few);
+      tet_render(&tet, &camera, NULL, frame, NULL); /* so that nothing is left to be made */
+      times_add(&times[i], measure_frame(job, &tet, &camera, NULL, frame, &stats[i]));
+    }
+  }
+  Row row = job->row;
+  row.task = "frame";
+  row.renderer = "tetcast exact";
+  row.threads = 1;
+  row.pixels = job->options->pixels;
+  for (int i = 0; i < 2; i++) {
+    row.what = i == 0 ? "100 % visible" : "1 % visible";
+    row.isa = stats[i].isa;
+    row.precision = stats[i].precision;
+    row.times = &times[i];
+    row.crossed = stats[i].segments;
+    row_write(&row);
+  }
+  tetcast_frame_destroy(&frame);
+  tet_close(&tet);
+}
+
+/* ── features ── */
+
+/* A picture like that through transfer_linear but for one thing. */
+typedef struct Feature {
+  const char *name;
+  const Transfer *transfer;
+  int values; /* 0: the points', 1: the cells', 2: the same everywhere */
+  TetcastType type;
+  uint32_t channels;
+  int samples;
+  Times times;
+  TetcastRenderStats stats;
+} Feature;
+
+static TetcastField *make_field(Tet *tet, const BenchMesh *mesh, int values, double *memory) {
+  const bool cells = values == 1;
+  const int64_t count = cells ? mesh->cell_count : mesh->vertex_count;
+  for (int64_t i = 0; i < count; i++) {
+    memory[i] = values == 2 ? 0.5 : bench_mesh_scalar(mesh, cells ? mesh->cells[i][0] : i);
+  }
+  TetcastFieldDesc desc = tetcast_field_desc_default();
+  desc.values = (TetcastArray){.data = memory, .type = TETCAST_TYPE_FLOAT64, .count = count};
+  desc.association = cells ? TETCAST_CELL : TETCAST_POINT;
+  TetcastField *field = NULL;
+  must(tetcast_field_create(tet->context, &desc, &field) == TETCAST_OK, "field");
+  return field;
+}
+
+void job_features(const Job *job) {
+  Transfer colors = transfer_linear, knots = transfer_soft;
+  colors.color_count = transfer_soft.color_count;
+  knots.color_count = 1;
+  for (int i = 0; i < transfer_soft.color_count; i++) {
+    for (int k = 0; k < 4; k++) {
+      colors.color[i][k] = transfer_soft.color[i][k];
+    }
+  }
+  const TetcastType f32 = TETCAST_TYPE_FLOAT32, f64 = TETCAST_TYPE_FLOAT64;
+  Feature features[] = {
+    {"one piece and one colour", &transfer_linear, 0, f64, 0, 1, {{0}, {0}}, {0}},
+    {"colours with knots", &colors, 0, f64, 0, 1, {{0}, {0}}, {0}},
+    {"extinction with knots", &knots, 0, f64, 0, 1, {{0}, {0}}, {0}},
+    {"both with knots", &transfer_soft, 0, f64, 0, 1, {{0}, {0}}, {0}},
+    {"field of cells", &transfer_linear, 1, f64, 0, 1, {{0}, {0}}, {0}},
+    {"field the same everywhere", &transfer_linear, 2, f64, 0, 1, {{0}, {0}}, {0}},
+    {"channel of error bounds", &transfer_linear, 0, f64, TETCAST_CHANNEL_ERROR, 1, {{0}, {0}}, {0}},
+    {"frame of float", &transfer_linear, 0, f32, 0, 1, {{0}, {0}}, {0}},
+    {"4 samples a pixel", &transfer_linear, 0, f64, 0, 4, {{0}, {0}}, {0}},
+  };
+  const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
+  Tet tet;
+  tet_open(&tet, job->mesh, 1);
+  tet_prepare(&tet);
+  const int64_t most = job->mesh->cell_count > job->mesh->vertex_count ? job->mesh->cell_count : job->mesh->vertex_count;
+  double *memory = calloc((size_t)most, sizeof *memory);
+  must(memory != NULL, "no memory");
+  TetcastField *fields[3];
+  for (int i = 0; i < 3; i++) {
+    fields[i] = make_field(&tet, job->mesh, i, memory);
+  }
+  free(memory);
+  const int count = sizeof features / sizeof *features;
+  for (int round = 0; round < job->scene->rounds; round++) {
+    for (int i = 0; i < count; i++) {
+      Feature *feature = &features[i];
+      must(tetcast_volume_set_field(tet.volume, fields[feature->values]) == TETCAST_OK, "set field");
+      tet_transfer(&tet, feature->transfer);
+      TetcastRenderDesc desc = tetcast_render_desc_default();
+      desc.samples = feature->samples;
+      TetcastFrame *frame = tet_frame(&tet, job->options->pixels, feature->type, feature->channels);
+      tet_render(&tet, &camera, NULL, frame, NULL);
+      times_add(&feature->times, measure_frame(job, &tet, &camera, &desc, frame, &feature->stats));
+      tetcast_frame_destroy(&frame);
+    }
+  }
+  Row row = job->row;
+  row.task = "feature";
+  row.renderer = "tetcast exact";
+  row.threads = 1;
+  row.pixels = job->options->pixels;
+  for (int i = 0; i < count; i++) {
+    row.what = features[i].name;
+    row.isa = features[i].stats.isa;
+    row.precision = features[i].stats.precision;
+    row.times = &features[i].times;
+    row.crossed = features[i].stats.segments;
+    row_write(&row);
+  }
+  for (int i = 0; i < 3; i++) {
+    tetcast_field_destroy(&fields[i]);
+  }
+  tet_close(&tet);
+}
