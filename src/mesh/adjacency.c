@@ -1,236 +1,300 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Faces are brought together by a counting sort on their smallest vertex, then, in each bucket of a few dozen, by their
- * two others: no hash table, memory proportional to the mesh, and the buckets are independent of each other. */
+/* Cells are sorted by their smallest vertex, and once more, as an index, by their second: then all faces with a given smallest vertex
+ * are at hand in two places, and are brought together vertex by vertex in a table that fits the innermost cache. With vertices
+ * numbered along a curve through space, that order of the cells follows the curve, too.
+ *
+ * Bytes per cell: the result 20, whose place the vertices of the mesh's cells have until they are sorted; records 8 and the space to
+ * sort them 8; the sorted cells' vertices 16 and sources 4: 56 in all, of which 24 stay. The caller's arrays come on top: 4 per vertex for
+ * the ranks, 20 or 36 for the volume's vertices, about 6 or 7 per cell. Only a vertex at which nearly all cells meet needs more, up to 48. */
 #include "mesh/adjacency.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/parallel.h"
+#include "mesh/order.h"
+#include "mesh/stage.h"
 
-/* Face k of a cell is opposite its k-th smallest vertex; its number is 4 · cell + k. */
-typedef struct Face {
-  uint32_t middle, high; /* the two larger vertices, the bucket is the smallest */
-  uint32_t opposite;
-  uint64_t number;
-} Face;
+enum { GRAIN = 1 << 14, VERTEX_GRAIN = 1 << 11, AHEAD = 32 };
+
+/* While faces are linked: a face that has been seen in one cell so far, and one of three cells or more. */
+#define FACE_OF_ONE TC_SHELL
+#define FACE_OF_MANY (TC_SHELL | 1)
 
 typedef struct Build {
   TetcastContext *context;
-  int64_t cell_count, vertex_count;
-  uint32_t (*sorted)[4];   /* the vertices of each cell, ascending */
-  uint64_t *bucket;        /* [vertex_count + 1]: where the faces of a smallest vertex begin */
-  uint64_t *faces;         /* [4 · cell_count]: face numbers by bucket, sorted within it after find_duplicates() */
+  const TetcastMesh *mesh;
+  const uint32_t *rank;
+  TcAdjacency *result;
+  int64_t mesh_cell_count, cell_count, vertex_count;
+  uint32_t (*unsorted)[4];     /* [mesh_cell_count]: the vertices of each of the mesh's cells, ascending; where `cells` will be */
+  uint64_t *records, *scratch; /* [mesh_cell_count]: keys are vertices, values are cells */
+  uint32_t (*vertices)[4];     /* [cell_count]: of each cell, ascending; cells in ascending order */
+  uint32_t *source;
   TcCell *cells;
-  _Atomic(unsigned char) *duplicate; /* [cell_count] or NULL */
-  atomic_llong duplicates, boundary, nonmanifold, shell;
+  int64_t *shell_begin;        /* [pieces of GRAIN cells]: the first shell face */
+  atomic_llong collapsed, duplicates, boundary, nonmanifold;
   atomic_bool out_of_memory;
 } Build;
 
-static Face face_of(const Build *build, uint64_t number) {
-  const uint32_t *v = build->sorted[number >> 2];
-  switch (number & 3) { /* the smallest vertex is v[0], or v[1] for the face opposite v[0] */
-  case 0: return (Face){v[2], v[3], v[0], number};
-  case 1: return (Face){v[2], v[3], v[1], number};
-  case 2: return (Face){v[1], v[3], v[2], number};
-  default: return (Face){v[1], v[2], v[3], number};
+/* ── cells in order ── */
+
+/* Renumbers and records by smallest vertex; what has a vertex twice goes to the end. */
+static bool read_cells(void *data, int64_t begin, int64_t end, int worker) {
+  (void)worker;
+  Build *build = data;
+  int64_t collapsed = 0;
+  for (int64_t i = begin; i < end; ++i) {
+    uint32_t *v = build->unsorted[i];
+    tc_mesh_cell(build->mesh, i, v);
+    if (build->rank) {
+      for (int k = 0; k < 4; ++k) v[k] = build->rank[v[k]];
+    }
+    tc_sort4(v);
+    const bool flat = (v[0] == v[1]) | (v[1] == v[2]) | (v[2] == v[3]);
+    collapsed += flat;
+    build->records[i] = tc_record(flat ? (uint32_t)build->vertex_count : v[0], (uint32_t)i);
   }
+  atomic_fetch_add(&build->collapsed, collapsed);
+  return true;
 }
 
-static bool same_face(const Face *a, const Face *b) { return a->middle == b->middle && a->high == b->high; }
+typedef struct Entry {
+  uint32_t v[4], source;
+} Entry;
 
-static int compare_faces(const void *left, const void *right) {
-  const Face *a = left, *b = right;
-  if (a->middle != b->middle) return a->middle < b->middle ? -1 : 1;
-  if (a->high != b->high) return a->high < b->high ? -1 : 1;
-  if (a->opposite != b->opposite) return a->opposite < b->opposite ? -1 : 1;
-  return a->number < b->number ? -1 : a->number > b->number;
+static int compare_entries(const void *left, const void *right) {
+  const Entry *a = left, *b = right;
+  for (int k = 1; k < 4; ++k) {
+    if (a->v[k] != b->v[k]) return a->v[k] < b->v[k] ? -1 : 1;
+  }
+  return a->source < b->source ? -1 : a->source > b->source;
 }
 
-static void sort_faces(Face *faces, size_t count) {
+static void sort_entries(Entry *entries, int64_t count) {
   if (count > 48) {
-    qsort(faces, count, sizeof *faces, compare_faces);
+    qsort(entries, (size_t)count, sizeof *entries, compare_entries);
     return;
   }
-  for (size_t i = 1; i < count; ++i) {
-    const Face face = faces[i];
-    size_t j = i;
-    for (; j > 0 && compare_faces(&face, &faces[j - 1]) < 0; --j) faces[j] = faces[j - 1];
-    faces[j] = face;
+  for (int64_t i = 1; i < count; ++i) {
+    const Entry entry = entries[i];
+    int64_t j = i;
+    for (; j > 0 && compare_entries(&entry, &entries[j - 1]) < 0; --j) entries[j] = entries[j - 1];
+    entries[j] = entry;
   }
 }
 
-/* Runs `visit` over each bucket's faces, sorted. */
-enum { SMALL_BUCKET = 256 };
+/* Takes the cells of records [begin, end), which have the same smallest vertex, and sorts them by the others. */
+static bool take_run(Build *build, int64_t begin, int64_t end) {
+  enum { SMALL = 128 };
+  Entry small[SMALL], *entries = small;
+  const int64_t count = end - begin;
+  if (count > SMALL) {
+    entries = tc_allocate(build->context, count, sizeof *entries);
+    if (!entries) return false;
+  }
+  for (int64_t i = 0; i < count; ++i) {
+    entries[i].source = tc_record_value(build->records[begin + i]);
+    memcpy(entries[i].v, build->unsorted[entries[i].source], sizeof entries[i].v);
+  }
+  sort_entries(entries, count);
+  int64_t duplicates = 0;
+  for (int64_t i = 0; i < count; ++i) {
+    memcpy(build->vertices[begin + i], entries[i].v, sizeof entries[i].v);
+    build->source[begin + i] = entries[i].source;
+    duplicates += i > 0 && memcmp(entries[i].v, entries[i - 1].v, sizeof entries[i].v) == 0;
+  }
+  if (duplicates) atomic_fetch_add(&build->duplicates, duplicates);
+  if (entries != small) tc_release(build->context, entries);
+  return true;
+}
 
-static bool load_bucket(Build *build, int64_t vertex, bool sorted, Face *small, Face **faces, size_t *count) {
-  const uint64_t begin = build->bucket[vertex];
-  *count = (size_t)(build->bucket[vertex + 1] - begin);
-  *faces = small;
-  if (*count > SMALL_BUCKET) {
-    *faces = tc_allocate(build->context, (int64_t)*count, sizeof **faces);
-    if (!*faces) {
+/* Runs that begin in [begin, end). */
+static bool take_cells(void *data, int64_t begin, int64_t end, int worker) {
+  (void)worker;
+  Build *build = data;
+  const uint64_t *records = build->records;
+  int64_t i = begin;
+  while (i > 0 && i < end && tc_record_key(records[i]) == tc_record_key(records[i - 1])) ++i;
+  while (i < end) {
+    int64_t j = i + 1;
+    while (j < build->cell_count && tc_record_key(records[j]) == tc_record_key(records[i])) ++j;
+    for (int64_t k = i; k < j && k + AHEAD < build->cell_count; ++k) {
+      __builtin_prefetch(build->unsorted[tc_record_value(records[k + AHEAD])]);
+    }
+    if (!take_run(build, i, j)) {
+      atomic_store(&build->out_of_memory, true);
+      return false;
+    }
+    i = j;
+  }
+  return true;
+}
+
+/* Of cells with the same vertices the mesh's first stays. */
+static void drop_duplicates(Build *build) {
+  int64_t count = 0;
+  for (int64_t i = 0; i < build->cell_count; ++i) {
+    if (count > 0 && memcmp(build->vertices[count - 1], build->vertices[i], sizeof *build->vertices) == 0) continue;
+    memmove(build->vertices[count], build->vertices[i], sizeof *build->vertices);
+    build->source[count++] = build->source[i];
+  }
+  build->cell_count = count;
+}
+
+/* ── faces ── */
+
+/* No face joined to another yet; records by second vertex. */
+static bool begin_cells(void *data, int64_t begin, int64_t end, int worker) {
+  (void)worker;
+  Build *build = data;
+  for (int64_t i = begin; i < end; ++i) {
+    const uint32_t *v = build->vertices[i];
+    build->cells[i] = (TcCell){v[0] ^ v[1] ^ v[2] ^ v[3], {FACE_OF_ONE, FACE_OF_ONE, FACE_OF_ONE, FACE_OF_ONE}};
+    build->records[i] = tc_record(v[1], (uint32_t)i);
+  }
+  return true;
+}
+
+/* A face's number is 4 · cell + k: it is opposite the cell's k-th smallest vertex. */
+static uint32_t *neighbor_of(Build *build, uint64_t number) { return &build->cells[number >> 2].neighbor[number & 3]; }
+
+static uint32_t face_smallest(const Build *build, uint64_t number) { return build->vertices[number >> 2][(number & 3) == 0]; }
+
+/* Its two larger vertices. */
+static uint64_t face_key(const Build *build, uint64_t number) {
+  const uint32_t *v = build->vertices[number >> 2];
+  const unsigned k = number & 3;
+  return (uint64_t)v[k < 2 ? 2 : 1] << 32 | v[k < 3 ? 3 : 2];
+}
+
+/* Another face with the vertices of `first`, which stands for all before it. */
+static void join(Build *build, uint64_t first, uint64_t number) {
+  uint32_t *neighbor = neighbor_of(build, first);
+  if (*neighbor == FACE_OF_ONE) {
+    *neighbor = (uint32_t)(number >> 2);
+    *neighbor_of(build, number) = (uint32_t)(first >> 2);
+    return;
+  }
+  if (*neighbor != FACE_OF_MANY) { /* so far of two cells; they share no other face */
+    uint64_t second = (uint64_t)*neighbor * 4;
+    while (face_smallest(build, second) != face_smallest(build, first) || face_key(build, second) != face_key(build, first)) ++second;
+    *neighbor_of(build, second) = *neighbor = FACE_OF_MANY;
+    atomic_fetch_add(&build->nonmanifold, 1);
+  }
+  *neighbor_of(build, number) = FACE_OF_MANY;
+}
+
+/* One vertex's faces: those of cells [begin, end) but the first of each, and the first of the cells in records [second, second_end). */
+static bool link_vertex(Build *build, int64_t begin, int64_t end, int64_t second, int64_t second_end) {
+  enum { SMALL = 512 };
+  uint64_t small[SMALL], *table = small; /* face number + 1, by a hash of the key */
+  int bits = 4;
+  while (INT64_C(1) << bits <= 3 * (end - begin) + (second_end - second)) ++bits;
+  if (bits < 8) ++bits; /* less to search */
+  const uint64_t size = UINT64_C(1) << bits;
+  if (size > SMALL) {
+    table = tc_allocate(build->context, (int64_t)size, sizeof *table);
+    if (!table) return false;
+  }
+  memset(table, 0, size * sizeof *table);
+  for (int64_t i = begin, k = 1; i < end || second < second_end;) {
+    uint64_t number;
+    if (i < end) {
+      number = (uint64_t)i * 4 + (uint64_t)k;
+      if (++k == 4) ++i, k = 1;
+    } else {
+      number = (uint64_t)tc_record_value(build->records[second++]) * 4;
+    }
+    const uint64_t key = face_key(build, number);
+    uint64_t slot = key * UINT64_C(0x9e3779b97f4a7c15) >> (64 - bits);
+    while (table[slot] && face_key(build, table[slot] - 1) != key) slot = (slot + 1) & (size - 1);
+    if (table[slot]) join(build, table[slot] - 1, number);
+    else table[slot] = number + 1;
+  }
+  if (table != small) tc_release(build->context, table);
+  return true;
+}
+
+/* The first cell whose smallest vertex is ≥ vertex. */
+static int64_t find_cell(const Build *build, uint32_t vertex) {
+  int64_t low = 0, high = build->cell_count;
+  while (low < high) {
+    const int64_t middle = low + (high - low) / 2;
+    if (build->vertices[middle][0] < vertex) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+/* All faces whose smallest vertex is in [begin, end). */
+static bool link_cells(void *data, int64_t begin, int64_t end, int worker) {
+  (void)worker;
+  Build *build = data;
+  int64_t cell = find_cell(build, (uint32_t)begin), record = tc_find_record(build->records, build->cell_count, (uint32_t)begin);
+  for (uint32_t vertex = (uint32_t)begin; vertex < (uint32_t)end; ++vertex) {
+    const int64_t first_cell = cell, first_record = record;
+    while (cell < build->cell_count && build->vertices[cell][0] == vertex) ++cell;
+    while (record < build->cell_count && tc_record_key(build->records[record]) == vertex) ++record;
+    if (!link_vertex(build, first_cell, cell, first_record, record)) {
       atomic_store(&build->out_of_memory, true);
       return false;
     }
   }
-  for (size_t i = 0; i < *count; ++i) (*faces)[i] = face_of(build, build->faces[begin + i]);
-  if (!sorted) {
-    sort_faces(*faces, *count);
-    for (size_t i = 0; i < *count; ++i) build->faces[begin + i] = (*faces)[i].number;
-  }
   return true;
 }
 
-/* Sorts the buckets and marks every cell whose four vertices an earlier cell has. */
-static bool find_duplicates(void *data, int64_t begin, int64_t end, int worker) {
+/* ── shell ── */
+
+static bool is_shell(uint32_t neighbor) { return neighbor & TC_SHELL; }
+
+static bool count_shell(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   Build *build = data;
-  Face small[SMALL_BUCKET], *faces;
-  size_t count;
-  for (int64_t vertex = begin; vertex < end; ++vertex) {
-    if (!load_bucket(build, vertex, false, small, &faces, &count)) return false;
-    for (size_t i = 1; i < count; ++i) {
-      if (same_face(&faces[i], &faces[i - 1]) && faces[i].opposite == faces[i - 1].opposite && (faces[i].number & 3) == 3) {
-        build->duplicate[faces[i].number >> 2] = 1;
-        atomic_fetch_add(&build->duplicates, 1);
-      }
+  int64_t count = 0, boundary = 0;
+  for (int64_t i = begin; i < end; ++i) {
+    for (int k = 0; k < 4; ++k) {
+      count += is_shell(build->cells[i].neighbor[k]);
+      boundary += build->cells[i].neighbor[k] == FACE_OF_ONE;
     }
-    if (faces != small) tc_release(build->context, faces);
   }
+  build->shell_begin[begin / GRAIN] = count;
+  atomic_fetch_add(&build->boundary, boundary);
   return true;
-}
-
-/* Links the two cells of each face; any other number of cells makes it a shell face of each. */
-static bool link_cells(void *data, int64_t begin, int64_t end, int worker) {
-  (void)worker;
-  Build *build = data;
-  Face small[SMALL_BUCKET], *faces;
-  size_t count;
-  for (int64_t vertex = begin; vertex < end; ++vertex) {
-    if (!load_bucket(build, vertex, true, small, &faces, &count)) return false;
-    for (size_t i = 0, n; i < count; i += n) {
-      n = 1;
-      while (i + n < count && same_face(&faces[i], &faces[i + n])) ++n;
-      if (n == 2) {
-        const uint64_t a = faces[i].number, b = faces[i + 1].number;
-        build->cells[a >> 2].neighbor[a & 3] = (uint32_t)(b >> 2);
-        build->cells[b >> 2].neighbor[b & 3] = (uint32_t)(a >> 2);
-      } else {
-        for (size_t j = 0; j < n; ++j) build->cells[faces[i + j].number >> 2].neighbor[faces[i + j].number & 3] = TC_SHELL;
-        atomic_fetch_add(&build->shell, (long long)n);
-        atomic_fetch_add(n == 1 ? &build->boundary : &build->nonmanifold, 1);
-      }
-    }
-    if (faces != small) tc_release(build->context, faces);
-  }
-  return true;
-}
-
-/* Takes the mesh's cells but those with a vertex twice, and, on the second round, those marked as duplicates. */
-static int64_t take_cells(const TetcastMesh *mesh, Build *build, TcAdjacency *result, const Build *previous) {
-  int64_t count = 0, next = 0;
-  for (int64_t i = 0; i < mesh->tetrahedra.count; ++i) {
-    int64_t v[4];
-    tc_mesh_tetrahedron(mesh, i, v);
-    uint32_t *s = build->sorted[count];
-    for (int k = 0; k < 4; ++k) s[k] = (uint32_t)v[k];
-    tc_sort4(s);
-    if (s[0] == s[1] || s[1] == s[2] || s[2] == s[3]) {
-      ++result->collapsed;
-      continue;
-    }
-    if (previous && previous->duplicate[next++]) continue;
-    if (result->source) result->source[count] = (uint32_t)i;
-    ++count;
-  }
-  return count;
-}
-
-static void fill_buckets(Build *build) {
-  memset(build->bucket, 0, (size_t)(build->vertex_count + 1) * sizeof *build->bucket);
-  for (int64_t i = 0; i < build->cell_count; ++i) {
-    build->bucket[build->sorted[i][0]] += 3;
-    build->bucket[build->sorted[i][1]] += 1;
-  }
-  uint64_t sum = 0;
-  for (int64_t v = 0; v <= build->vertex_count; ++v) { /* to the end of each bucket: filled downwards, it becomes the beginning */
-    sum += build->bucket[v];
-    build->bucket[v] = sum;
-  }
-  for (int64_t i = build->cell_count - 1; i >= 0; --i) {
-    const uint64_t number = (uint64_t)i * 4;
-    for (uint64_t k = 3; k >= 1; --k) build->faces[--build->bucket[build->sorted[i][0]]] = number + k;
-    build->faces[--build->bucket[build->sorted[i][1]]] = number;
-  }
 }
 
 /* Gives each shell face its number and its record. */
-static void collect_shell(Build *build, TcAdjacency *result) {
-  int64_t next = 0;
-  for (int64_t i = 0; i < build->cell_count; ++i) {
-    const uint32_t *v = build->sorted[i];
+static bool take_shell(void *data, int64_t begin, int64_t end, int worker) {
+  (void)worker;
+  Build *build = data;
+  int64_t next = build->shell_begin[begin / GRAIN];
+  for (int64_t i = begin; i < end; ++i) {
     for (int k = 0; k < 4; ++k) {
-      if (build->cells[i].neighbor[k] != TC_SHELL) continue;
-      TcShellFace *face = &result->shell[next];
+      if (!is_shell(build->cells[i].neighbor[k])) continue;
+      TcShellFace *face = &build->result->shell[next];
       for (int j = 0, n = 0; j < 4; ++j) {
-        if (j != k) face->vertex[n++] = v[j];
+        if (j != k) face->vertex[n++] = build->vertices[i][j];
       }
       face->cell = (uint32_t)i;
       build->cells[i].neighbor[k] = TC_SHELL | (uint32_t)next++;
     }
   }
+  return true;
 }
 
-static TetcastStatus out_of_memory(const Build *build) {
-  return tc_error(build->context, TETCAST_ERROR_MEMORY, "out of memory: adjacency of %lld cells", (long long)build->cell_count);
-}
-
-static TetcastStatus run(const TetcastMesh *mesh, Build *build, TcAdjacency *result, const TetcastProgress *progress) {
+static TetcastStatus make_shell(Build *build) {
   TetcastContext *context = build->context;
-  const int64_t all = mesh->tetrahedra.count;
-  build->vertex_count = mesh->vertices.count;
-  if (!tc_allocate_array(context, (void **)&build->sorted, all, sizeof *build->sorted, "cells") ||
-      !tc_allocate_array(context, (void **)&build->bucket, build->vertex_count + 1, sizeof *build->bucket, "faces") ||
-      !tc_allocate_array(context, (void **)&build->faces, all * 4, sizeof *build->faces, "faces") ||
-      !tc_allocate_array(context, (void **)&build->duplicate, all, 1, "cells")) {
+  TcAdjacency *result = build->result;
+  const int64_t pieces = (build->cell_count + GRAIN - 1) / GRAIN;
+  if (!tc_allocate_array(context, (void **)&build->shell_begin, pieces, sizeof *build->shell_begin, "boundary faces")) {
     return TETCAST_ERROR_MEMORY;
   }
-  memset((void *)build->duplicate, 0, (size_t)all);
-  build->cell_count = take_cells(mesh, build, result, NULL);
-  fill_buckets(build);
-  TetcastStatus status = tc_parallel_for(context, build->vertex_count, 4096, find_duplicates, build, progress);
-  if (atomic_load(&build->out_of_memory)) return out_of_memory(build);
-  if (status) return status;
-  result->duplicates = atomic_load(&build->duplicates);
-  if (result->collapsed + result->duplicates > 0) { /* numbers shift: note where cells came from; rare, so simply once more */
-    if (!tc_allocate_array(context, (void **)&result->source, all, sizeof *result->source, "cells")) return TETCAST_ERROR_MEMORY;
-    result->collapsed = 0;
-    build->cell_count = take_cells(mesh, build, result, build);
-    fill_buckets(build);
-    memset((void *)build->duplicate, 0, (size_t)all);
-    status = tc_parallel_for(context, build->vertex_count, 4096, find_duplicates, build, progress);
-    if (atomic_load(&build->out_of_memory)) return out_of_memory(build);
-    if (status) return status;
+  tc_parallel_for(context, build->cell_count, GRAIN, count_shell, build, NULL);
+  for (int64_t i = 0; i < pieces; ++i) {
+    const int64_t count = build->shell_begin[i];
+    build->shell_begin[i] = result->shell_count;
+    result->shell_count += count;
   }
-  tc_release(context, (void *)build->duplicate);
-  build->duplicate = NULL;
-
-  result->cell_count = build->cell_count;
-  if (!tc_allocate_array(context, (void **)&result->cells, build->cell_count, sizeof *result->cells, "cells")) {
-    return TETCAST_ERROR_MEMORY;
-  }
-  build->cells = result->cells;
-  for (int64_t i = 0; i < build->cell_count; ++i) {
-    const uint32_t *v = build->sorted[i];
-    build->cells[i].vertex_xor = v[0] ^ v[1] ^ v[2] ^ v[3];
-  }
-  status = tc_parallel_for(context, build->vertex_count, 4096, link_cells, build, progress);
-  if (atomic_load(&build->out_of_memory)) return out_of_memory(build);
-  if (status) return status;
-  result->nonmanifold = atomic_load(&build->nonmanifold);
-  result->boundary = atomic_load(&build->boundary);
-  result->shell_count = atomic_load(&build->shell);
   if (result->shell_count > TC_MAX_COUNT) {
     return tc_error(context, TETCAST_ERROR_LIMIT, "%lld boundary faces: at most %d can be held", (long long)result->shell_count,
                     (int)TC_MAX_COUNT);
@@ -238,23 +302,86 @@ static TetcastStatus run(const TetcastMesh *mesh, Build *build, TcAdjacency *res
   if (!tc_allocate_array(context, (void **)&result->shell, result->shell_count, sizeof *result->shell, "boundary faces")) {
     return TETCAST_ERROR_MEMORY;
   }
-  collect_shell(build, result);
+  tc_parallel_for(context, build->cell_count, GRAIN, take_shell, build, NULL);
   return TETCAST_OK;
 }
 
-TetcastStatus tc_adjacency_build(const TetcastMesh *mesh, bool keep_vertices, const TetcastProgress *progress,
+/* ── all of it ── */
+
+static TetcastStatus stopped(const Build *build, TetcastStatus status) {
+  if (!atomic_load(&build->out_of_memory)) return status;
+  return tc_error(build->context, TETCAST_ERROR_MEMORY, "out of memory: adjacency of %lld cells", (long long)build->mesh_cell_count);
+}
+
+static TetcastStatus sort_cells(Build *build, const TetcastProgress *progress) {
+  TetcastContext *context = build->context;
+  const int64_t all = build->mesh_cell_count;
+  if (!tc_allocate_array(context, (void **)&build->cells, all, sizeof *build->cells, "cells") ||
+      !tc_allocate_array(context, (void **)&build->records, all, sizeof *build->records, "cells") ||
+      !tc_allocate_array(context, (void **)&build->scratch, all, sizeof *build->scratch, "cells")) {
+    return TETCAST_ERROR_MEMORY;
+  }
+  build->unsorted = (uint32_t(*)[4])(void *)build->cells;
+  TcStage stage;
+  TetcastStatus status = tc_parallel_for(context, all, GRAIN, read_cells, build, tc_stage(&stage, progress, 0, 0.2));
+  if (!status) status = tc_sort_records(context, &build->records, &build->scratch, all, (uint32_t)build->vertex_count);
+  if (status) return status;
+  build->cell_count = all - atomic_load(&build->collapsed);
+  if (!tc_allocate_array(context, (void **)&build->vertices, build->cell_count, sizeof *build->vertices, "cells") ||
+      !tc_allocate_array(context, (void **)&build->source, build->cell_count, sizeof *build->source, "cells")) {
+    return TETCAST_ERROR_MEMORY;
+  }
+  status = tc_parallel_for(context, build->cell_count, GRAIN, take_cells, build, tc_stage(&stage, progress, 0.2, 0.5));
+  if (status) return stopped(build, status);
+  if (atomic_load(&build->duplicates) > 0) drop_duplicates(build);
+  if (build->cell_count == all) return TETCAST_OK;
+  tc_release(context, build->cells);
+  return tc_allocate_array(context, (void **)&build->cells, build->cell_count, sizeof *build->cells, "cells") ? TETCAST_OK
+                                                                                                             : TETCAST_ERROR_MEMORY;
+}
+
+static TetcastStatus link(Build *build, const TetcastProgress *progress) {
+  TetcastContext *context = build->context;
+  TcStage stage;
+  TetcastStatus status =
+    tc_parallel_for(context, build->cell_count, GRAIN, begin_cells, build, tc_stage(&stage, progress, 0.5, 0.6));
+  if (!status) {
+    status = tc_sort_records(context, &build->records, &build->scratch, build->cell_count, (uint32_t)build->vertex_count);
+  }
+  if (status) return status;
+  tc_release(context, build->scratch);
+  build->scratch = NULL;
+  status = tc_parallel_for(context, build->vertex_count, VERTEX_GRAIN, link_cells, build, tc_stage(&stage, progress, 0.6, 0.9));
+  if (status) return stopped(build, status);
+  tc_release(context, build->records);
+  build->records = NULL;
+  return make_shell(build);
+}
+
+TetcastStatus tc_adjacency_build(const TetcastMesh *mesh, const uint32_t *rank, bool keep_vertices, const TetcastProgress *progress,
                                  TcAdjacency *result) {
   memset(result, 0, sizeof *result);
   result->context = mesh->context;
-  Build build;
-  memset(&build, 0, sizeof build);
-  build.context = mesh->context;
-  const TetcastStatus status = run(mesh, &build, result, progress);
-  if (keep_vertices) result->vertices = build.sorted;
-  else tc_release(build.context, build.sorted);
-  tc_release(build.context, build.bucket);
-  tc_release(build.context, build.faces);
-  tc_release(build.context, (void *)build.duplicate);
+  Build build = {.context = mesh->context,
+                 .mesh = mesh,
+                 .rank = rank,
+                 .result = result,
+                 .mesh_cell_count = mesh->tetrahedra.count,
+                 .vertex_count = mesh->vertices.count};
+  TetcastStatus status = sort_cells(&build, progress);
+  if (!status) status = link(&build, progress);
+  result->cell_count = build.cell_count;
+  result->cells = build.cells;
+  result->source = build.source;
+  result->collapsed = atomic_load(&build.collapsed);
+  result->duplicates = atomic_load(&build.duplicates);
+  result->boundary = atomic_load(&build.boundary);
+  result->nonmanifold = atomic_load(&build.nonmanifold);
+  if (keep_vertices) result->vertices = build.vertices;
+  else tc_release(build.context, build.vertices);
+  tc_release(build.context, build.records);
+  tc_release(build.context, build.scratch);
+  tc_release(build.context, build.shell_begin);
   if (status) tc_adjacency_clear(result);
   return status;
 }

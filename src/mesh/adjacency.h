@@ -26,31 +26,34 @@ typedef struct TcAdjacency {
   TcCell *cells;           /* [cell_count] */
   TcShellFace *shell;      /* [shell_count] */
   uint32_t (*vertices)[4]; /* [cell_count], ascending, if they were asked for */
-  uint32_t *source;        /* [cell_count]: the mesh's cell; NULL: the same number */
+  uint32_t *source;        /* [cell_count]: the mesh's cell */
   int64_t collapsed;       /* left out: a vertex twice */
   int64_t duplicates;      /* left out: the four vertices of an earlier cell */
   int64_t boundary;        /* faces of one cell */
   int64_t nonmanifold;     /* faces of three cells or more; each is a shell face of all of them */
 } TcAdjacency;
 
-/* Which cells meet at which faces. Time O(cells · log valence), working memory about 52 bytes per cell and 8 per vertex
- * beyond the result. Cleared on error. */
-TetcastStatus tc_adjacency_build(const TetcastMesh *mesh, bool keep_vertices, const TetcastProgress *progress,
+/* Which cells meet at which faces. Vertex v of the mesh is rank[v] in the result (NULL: the same), and cells are in ascending order of
+ * their ascending vertices: neighbours in memory are neighbours in space when vertices are. Working memory adjacency.c derives: at most
+ * 56 bytes per cell, result included. The result does not depend on the number of threads. Cleared on error. */
+TetcastStatus tc_adjacency_build(const TetcastMesh *mesh, const uint32_t *rank, bool keep_vertices, const TetcastProgress *progress,
                                  TcAdjacency *adjacency);
 /* Frees cells and shell, leaving the vertices. */
 void tc_adjacency_drop_links(TcAdjacency *adjacency);
 void tc_adjacency_clear(TcAdjacency *adjacency);
 
-/* The four vertices of a cell in ascending order. */
+/* The four vertices of a cell in ascending order; without branches, which no processor could foresee. */
 static inline void tc_sort4(uint32_t v[4]) {
-#define TC_SWAP(i, j)                        \
-  if (v[j] < v[i]) {                         \
-    const uint32_t t = v[i];                 \
-    v[i] = v[j];                             \
-    v[j] = t;                                \
+  uint32_t a = v[0], b = v[1], c = v[2], d = v[3];
+#define TC_SORT2(x, y)                \
+  {                                   \
+    const uint32_t t = x < y ? x : y; \
+    y = x < y ? y : x;                \
+    x = t;                            \
   }
-  TC_SWAP(0, 1) TC_SWAP(2, 3) TC_SWAP(0, 2) TC_SWAP(1, 3) TC_SWAP(1, 2)
-#undef TC_SWAP
+  TC_SORT2(a, b) TC_SORT2(c, d) TC_SORT2(a, c) TC_SORT2(b, d) TC_SORT2(b, c)
+#undef TC_SORT2
+  v[0] = a, v[1] = b, v[2] = c, v[3] = d;
 }
 
 #endif

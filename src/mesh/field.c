@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/parallel.h"
 #include "mesh/mesh.h"
 
 TetcastStatus tc_field_create(TetcastContext *context, const TetcastFieldDesc *desc, TetcastField **out) {
@@ -26,21 +27,51 @@ void tc_field_destroy(TetcastField *field) {
   tc_release(field->context, field);
 }
 
-void tc_field_range(const TetcastField *field, double range[2], int64_t *nonfinite_count) {
-  double low = INFINITY, high = -INFINITY;
-  int64_t nonfinite = 0;
-  for (int64_t i = 0; i < field->values.count; ++i) {
-    const double s = tc_array_double(&field->values, field->values.stride, i, 0);
+enum { PIECES = 64 };
+
+/* What a piece of the values holds. Pieces are put together in their order, so that the outcome is that of one loop over all. */
+typedef struct Range {
+  double low, high;
+  int64_t nonfinite;
+} Range;
+
+typedef struct Ranges {
+  const TetcastField *field;
+  int64_t piece;
+  Range of[PIECES];
+} Ranges;
+
+static bool take_range(void *data, int64_t begin, int64_t end, int worker) {
+  (void)worker;
+  Ranges *ranges = data;
+  Range range = {INFINITY, -INFINITY, 0};
+  for (int64_t i = begin; i < end; ++i) {
+    const double s = tc_field_at(ranges->field, i);
     if (!isfinite(s)) {
-      ++nonfinite;
+      ++range.nonfinite;
       continue;
     }
-    low = s < low ? s : low;
-    high = s > high ? s : high;
+    range.low = s < range.low ? s : range.low;
+    range.high = s > range.high ? s : range.high;
+  }
+  ranges->of[begin / ranges->piece] = range;
+  return true;
+}
+
+void tc_field_range(const TetcastField *field, double range[2], int64_t *nonfinite_count) {
+  const int64_t count = field->values.count, least = 1 << 14;
+  Ranges ranges = {.field = field, .piece = count / PIECES + 1 < least ? least : count / PIECES + 1};
+  tc_parallel_for(field->context, count, ranges.piece, take_range, &ranges, NULL);
+  Range all = {INFINITY, -INFINITY, 0};
+  for (int64_t i = 0; i * ranges.piece < count; ++i) {
+    const Range *part = &ranges.of[i];
+    all.low = part->low < all.low ? part->low : all.low;
+    all.high = part->high > all.high ? part->high : all.high;
+    all.nonfinite += part->nonfinite;
   }
   if (range) {
-    range[0] = low <= high ? low : 0;
-    range[1] = low <= high ? high : 0;
+    range[0] = all.low <= all.high ? all.low : 0;
+    range[1] = all.low <= all.high ? all.high : 0;
   }
-  if (nonfinite_count) *nonfinite_count = nonfinite;
+  if (nonfinite_count) *nonfinite_count = all.nonfinite;
 }

@@ -109,7 +109,7 @@ static TetcastStatus examine_vertices(TetcastContext *context, const TetcastMesh
 TetcastStatus tc_mesh_health(TetcastContext *context, const TetcastMesh *mesh, TetcastMeshHealth *health) {
   memset(health, 0, sizeof *health);
   TcAdjacency adjacency;
-  TetcastStatus status = tc_adjacency_build(mesh, false, NULL, &adjacency);
+  TetcastStatus status = tc_adjacency_build(mesh, NULL, false, NULL, &adjacency);
   if (status) return status;
   health->duplicate_cells = adjacency.duplicates;
   health->nonmanifold_faces = adjacency.nonmanifold;

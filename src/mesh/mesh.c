@@ -5,43 +5,103 @@
 #include <math.h>
 #include <string.h>
 
-static TetcastStatus check_vertices(TetcastContext *context, const TetcastMesh *mesh) {
-  for (int64_t i = 0; i < mesh->vertices.count; ++i) {
-    double p[3];
-    tc_mesh_vertex(mesh, i, p);
-    if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2])) {
-      return tc_error(context, TETCAST_ERROR_DATA, "vertex %" PRId64 " has a coordinate that is not finite: (%g, %g, %g)", i,
-                      p[0], p[1], p[2]);
-    }
-  }
-  return TETCAST_OK;
+#include "base/parallel.h"
+
+enum { GRAIN = 1 << 14 };
+
+/* Both checks look for the first that is wrong, whichever thread comes upon it. */
+typedef struct Check {
+  const TetcastMesh *mesh;
+  atomic_llong first_bad;
+  _Atomic(unsigned char) *used; /* [vertices]: named by a cell */
+} Check;
+
+static void found_bad(Check *check, int64_t i) {
+  long long first = atomic_load(&check->first_bad);
+  while (i < first && !atomic_compare_exchange_weak(&check->first_bad, &first, i)) continue;
 }
 
-/* Checks the indices and, on the way, takes the bounds of the vertices they name. */
-static TetcastStatus check_tetrahedra(TetcastContext *context, TetcastMesh *mesh) {
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-  for (int64_t i = 0; i < mesh->tetrahedra.count; ++i) {
+static bool check_vertices(void *data, int64_t begin, int64_t end, int worker) {
+  (void)worker;
+  Check *check = data;
+  for (int64_t i = begin; i < end; ++i) {
+    double p[3];
+    tc_mesh_vertex(check->mesh, i, p);
+    if (isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2])) continue;
+    found_bad(check, i);
+    break;
+  }
+  return true;
+}
+
+static bool check_tetrahedra(void *data, int64_t begin, int64_t end, int worker) {
+  (void)worker;
+  Check *check = data;
+  const TetcastMesh *mesh = check->mesh;
+  for (int64_t i = begin; i < end; ++i) {
     int64_t v[4];
     tc_mesh_tetrahedron(mesh, i, v);
-    for (int j = 0; j < 4; ++j) {
-      if (v[j] < 0 || v[j] >= mesh->vertices.count) {
-        return tc_error(context, TETCAST_ERROR_DATA,
-                        "tetrahedron %" PRId64 " names vertex %" PRId64 ", but there are %" PRId64 " vertices", i, v[j],
-                        mesh->vertices.count);
+    for (int k = 0; k < 4; ++k) {
+      if (v[k] < 0 || v[k] >= mesh->vertices.count) {
+        found_bad(check, i);
+        return true;
       }
-      double p[3];
-      tc_mesh_vertex(mesh, v[j], p);
-      for (int k = 0; k < 3; ++k) {
-        low[k] = fmin(low[k], p[k]);
-        high[k] = fmax(high[k], p[k]);
-      }
+      atomic_store_explicit(&check->used[v[k]], 1, memory_order_relaxed);
+    }
+  }
+  return true;
+}
+
+static TetcastStatus report_vertex(const TetcastMesh *mesh, int64_t i) {
+  double p[3];
+  tc_mesh_vertex(mesh, i, p);
+  return tc_error(mesh->context, TETCAST_ERROR_DATA, "vertex %" PRId64 " has a coordinate that is not finite: (%g, %g, %g)", i,
+                  p[0], p[1], p[2]);
+}
+
+static TetcastStatus report_tetrahedron(const TetcastMesh *mesh, int64_t i) {
+  int64_t v[4];
+  tc_mesh_tetrahedron(mesh, i, v);
+  int k = 0;
+  while (k < 3 && v[k] >= 0 && v[k] < mesh->vertices.count) ++k;
+  return tc_error(mesh->context, TETCAST_ERROR_DATA,
+                  "tetrahedron %" PRId64 " names vertex %" PRId64 ", but there are %" PRId64 " vertices", i, v[k],
+                  mesh->vertices.count);
+}
+
+/* Of the vertices that cells name. */
+static void take_bounds(TetcastMesh *mesh, const Check *check) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (int64_t i = 0; i < mesh->vertices.count; ++i) {
+    if (!check->used[i]) continue;
+    double p[3];
+    tc_mesh_vertex(mesh, i, p);
+    for (int k = 0; k < 3; ++k) {
+      low[k] = p[k] < low[k] ? p[k] : low[k];
+      high[k] = p[k] > high[k] ? p[k] : high[k];
     }
   }
   for (int k = 0; k < 3; ++k) {
     mesh->bounds[2 * k] = mesh->tetrahedra.count ? low[k] : 0;
     mesh->bounds[2 * k + 1] = mesh->tetrahedra.count ? high[k] : 0;
   }
-  return TETCAST_OK;
+}
+
+/* Coordinates are finite, indices in range; takes the bounds on the way. */
+static TetcastStatus examine(TetcastContext *context, TetcastMesh *mesh) {
+  Check check = {.mesh = mesh};
+  atomic_init(&check.first_bad, INT64_MAX);
+  tc_parallel_for(context, mesh->vertices.count, GRAIN, check_vertices, &check, NULL);
+  if (check.first_bad < INT64_MAX) return report_vertex(mesh, check.first_bad);
+  if (!tc_allocate_array(context, (void **)&check.used, mesh->vertices.count, sizeof *check.used, "mesh")) {
+    return TETCAST_ERROR_MEMORY;
+  }
+  memset((void *)check.used, 0, (size_t)mesh->vertices.count);
+  tc_parallel_for(context, mesh->tetrahedra.count, GRAIN, check_tetrahedra, &check, NULL);
+  const bool ok = check.first_bad == INT64_MAX;
+  if (ok) take_bounds(mesh, &check);
+  tc_release(context, (void *)check.used);
+  return ok ? TETCAST_OK : report_tetrahedron(mesh, check.first_bad);
 }
 
 TetcastStatus tc_mesh_create(TetcastContext *context, const TetcastMeshDesc *desc, TetcastMesh **out) {
@@ -59,8 +119,7 @@ TetcastStatus tc_mesh_create(TetcastContext *context, const TetcastMeshDesc *des
     status = tc_array_keep(context, &desc->tetrahedra, 4, desc->ownership, "tetrahedra", &mesh->tetrahedra,
                            &mesh->tetrahedron_memory);
   }
-  if (!status) status = check_vertices(context, mesh);
-  if (!status) status = check_tetrahedra(context, mesh);
+  if (!status) status = examine(context, mesh);
   if (status) {
     tc_mesh_destroy(mesh);
     return status;

@@ -2,6 +2,8 @@
 #ifndef TC_MESH_MESH_H
 #define TC_MESH_MESH_H
 
+#include <string.h>
+
 #include <tetcast/field.h>
 #include <tetcast/mesh.h>
 
@@ -32,11 +34,51 @@ void tc_field_range(const TetcastField *field, double range[2], int64_t *nonfini
 TetcastStatus tc_mesh_health(TetcastContext *context, const TetcastMesh *mesh, TetcastMeshHealth *health);
 
 static inline void tc_mesh_vertex(const TetcastMesh *mesh, int64_t i, double position[3]) {
-  for (int k = 0; k < 3; ++k) position[k] = tc_array_double(&mesh->vertices, mesh->vertices.stride, i, k);
+  const char *tuple = (const char *)mesh->vertices.data + i * mesh->vertices.stride; /* need not be aligned */
+  if (mesh->vertices.type == TETCAST_TYPE_FLOAT64) {
+    memcpy(position, tuple, 3 * sizeof *position);
+  } else {
+    float p[3];
+    memcpy(p, tuple, sizeof p);
+    for (int k = 0; k < 3; ++k) position[k] = (double)p[k];
+  }
 }
 
 static inline void tc_mesh_tetrahedron(const TetcastMesh *mesh, int64_t i, int64_t indices[4]) {
-  for (int k = 0; k < 4; ++k) indices[k] = tc_array_int64(&mesh->tetrahedra, mesh->tetrahedra.stride, i, k);
+  if (mesh->tetrahedra.type == TETCAST_TYPE_INT32) {
+    int32_t v[4];
+    memcpy(v, (const char *)mesh->tetrahedra.data + i * mesh->tetrahedra.stride, sizeof v);
+    for (int k = 0; k < 4; ++k) indices[k] = v[k];
+  } else {
+    for (int k = 0; k < 4; ++k) indices[k] = tc_array_int64(&mesh->tetrahedra, mesh->tetrahedra.stride, i, k);
+  }
+}
+
+/* The same for cells that have been checked: indices fit 31 bits, whatever type they came in. */
+static inline void tc_mesh_cell(const TetcastMesh *mesh, int64_t i, uint32_t vertices[4]) {
+  const char *tuple = (const char *)mesh->tetrahedra.data + i * mesh->tetrahedra.stride;
+  if (mesh->tetrahedra.type == TETCAST_TYPE_INT32 || mesh->tetrahedra.type == TETCAST_TYPE_UINT32) {
+    memcpy(vertices, tuple, 4 * sizeof *vertices);
+  } else {
+    uint64_t v[4];
+    memcpy(v, tuple, sizeof v);
+    for (int k = 0; k < 4; ++k) vertices[k] = (uint32_t)v[k];
+  }
+}
+
+static inline double tc_field_at(const TetcastField *field, int64_t i) {
+  const char *value = (const char *)field->values.data + i * field->values.stride;
+  if (field->values.type == TETCAST_TYPE_FLOAT64) {
+    double s;
+    memcpy(&s, value, sizeof s);
+    return s;
+  }
+  if (field->values.type == TETCAST_TYPE_FLOAT32) {
+    float s;
+    memcpy(&s, value, sizeof s);
+    return (double)s;
+  }
+  return tc_array_double(&field->values, field->values.stride, i, 0);
 }
 
 #endif

@@ -16,9 +16,11 @@ struct TetcastVolume {
   double center[3], radius; /* of a sphere around all cells, scaled */
   int64_t vertex_count, cell_count, mesh_cell_count;
 
-  /* [vertex_count][4]: x, y, z scaled, and the point field's value; float when the mesh and the field came as float32. */
+  /* [vertex_count][4]: x, y, z scaled, and the point field's value; float when the mesh and the field came as float32. In an order of
+   * the volume's own, along a curve through space; cells follow it (adjacency.h). */
   void *vertices;
   bool vertices_are_double, mesh_is_double;
+  uint32_t *vertex_source; /* [vertex_count]: the mesh's vertex */
 
   TcAdjacency adjacency; /* without cells where Embree holds every cell; `vertices` of it only there */
   TcEmbree *embree;

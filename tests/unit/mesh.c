@@ -58,6 +58,36 @@ static void bad_meshes_are_refused(void **state) {
   fixture_end(&fixture);
 }
 
+/* Of several, whichever thread comes upon it: of two neighbours the first may be the last of a piece of 2^14. */
+static void first_of_many_bad_is_named(void **state) {
+  (void)state;
+  for (int threads = 1; threads < 8; threads += 3) {
+    Fixture fixture;
+    assert_int_equal(fixture_begin(&fixture, threads, 0), TETCAST_OK);
+    Cube cube = cube_create(30, 0.3);
+    TetcastMeshDesc desc = tetcast_mesh_desc_default();
+    desc.vertices = (TetcastArray){cube.vertices, TETCAST_TYPE_FLOAT64, cube.vertex_count, 0};
+    desc.tetrahedra = (TetcastArray){cube.cells, TETCAST_TYPE_INT64, cube.cell_count, 0};
+    TetcastMesh *mesh;
+    for (int64_t bad = 9 << 14; bad >= 16383; bad -= bad % 2 ? 16383 : 1) {
+      cube.cells[4 * bad + 3] = -bad;
+      char name[80];
+      snprintf(name, sizeof name, "tetrahedron %ld names vertex -%ld", (long)bad, (long)bad);
+      assert_int_equal(tetcast_mesh_create(fixture.context, &desc, &mesh), TETCAST_ERROR_DATA);
+      assert_non_null(strstr(fixture.message, name));
+    }
+    for (int64_t bad = 1 << 14; bad >= 16382; --bad) {
+      cube.vertices[3 * bad + 1] = INFINITY;
+      char name[80];
+      snprintf(name, sizeof name, "vertex %ld has", (long)bad);
+      assert_int_equal(tetcast_mesh_create(fixture.context, &desc, &mesh), TETCAST_ERROR_DATA);
+      assert_non_null(strstr(fixture.message, name));
+    }
+    cube_destroy(&cube);
+    fixture_end(&fixture);
+  }
+}
+
 static void health_counts(void **state) {
   (void)state;
   Fixture fixture;
@@ -166,6 +196,23 @@ static void arrays_of_any_shape(void **state) {
   fixture_end(&fixture);
 }
 
+/* Vertices that no cell names may be anywhere. */
+static void bounds_are_those_of_the_cells(void **state) {
+  (void)state;
+  Fixture fixture;
+  assert_int_equal(fixture_begin(&fixture, 1, 0), TETCAST_OK);
+  const double vertices[6][3] = {{-1e9, 0, 0}, {1, 2, 3}, {2, 2, 3}, {1, 4, 3}, {1, 2, 8}, {0, 1e300, 0}};
+  const int32_t cell[] = {4, 2, 1, 3};
+  const double expected[6] = {1, 2, 2, 4, 3, 8};
+  double bounds[6];
+  TetcastMesh *mesh;
+  assert_int_equal(create(&fixture, vertices[0], 6, cell, 1, &mesh), TETCAST_OK);
+  tetcast_mesh_bounds(mesh, bounds);
+  assert_memory_equal(bounds, expected, sizeof bounds);
+  tetcast_mesh_destroy(&mesh);
+  fixture_end(&fixture);
+}
+
 static void fields(void **state) {
   (void)state;
   Fixture fixture;
@@ -191,11 +238,41 @@ static void fields(void **state) {
   fixture_end(&fixture);
 }
 
+/* In pieces the same as in one. */
+static void ranges_of_long_fields(void **state) {
+  (void)state;
+  enum { COUNT = 1234567 };
+  float *values = malloc(COUNT * sizeof *values);
+  for (int threads = 1; threads < 5; threads += 3) {
+    Fixture fixture;
+    assert_int_equal(fixture_begin(&fixture, threads, 0), TETCAST_OK);
+    for (int round = 0; round < 4; ++round) {
+      for (int i = 0; i < COUNT; ++i) values[i] = round == 3 ? NAN : (float)(i % 1000 - 500);
+      values[round * 400000] = -1e30f;
+      values[COUNT - 1 - round * 300000] = 2e30f;
+      values[600001] = INFINITY;
+      TetcastFieldDesc desc = tetcast_field_desc_default();
+      desc.values = (TetcastArray){values, TETCAST_TYPE_FLOAT32, COUNT, 0};
+      TetcastField *field;
+      assert_int_equal(tetcast_field_create(fixture.context, &desc, &field), TETCAST_OK);
+      double range[2];
+      int64_t nonfinite;
+      tetcast_field_range(field, range, &nonfinite);
+      assert_true(range[0] == (double)-1e30f && range[1] == (double)2e30f);
+      assert_int_equal(nonfinite, round == 3 ? COUNT - 2 : 1);
+      tetcast_field_destroy(&field);
+    }
+    fixture_end(&fixture);
+  }
+  free(values);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(bad_meshes_are_refused), cmocka_unit_test(health_counts),
+    cmocka_unit_test(bad_meshes_are_refused), cmocka_unit_test(first_of_many_bad_is_named), cmocka_unit_test(health_counts),
     cmocka_unit_test(three_cells_at_a_face_are_nonmanifold), cmocka_unit_test(cube_is_healthy),
-    cmocka_unit_test(arrays_of_any_shape), cmocka_unit_test(fields),
+    cmocka_unit_test(arrays_of_any_shape), cmocka_unit_test(bounds_are_those_of_the_cells), cmocka_unit_test(fields),
+    cmocka_unit_test(ranges_of_long_fields),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
