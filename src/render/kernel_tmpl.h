@@ -36,26 +36,29 @@ static void add_segment(const TetcastVolume *volume, const TcPieces *pieces, uin
 }
 
 /* Each path once, from the end that comes first. */
-static void cast_shell(const TetcastVolume *volume, const TcPieces *pieces, const TcRay *ray, TcWorker *worker, TcLight *light) {
+static void cast_shell(const TcShell *shell, const TcPieces *pieces, const TcRay *ray, TcWorker *worker, TcLight *light) {
+  const TetcastVolume *volume = shell->volume;
   TcSpans *faces = worker->spans;
   for (int64_t i = 0; i < faces->count; ++i) faces->data[i].done = false;
   for (int64_t i = 0; i < faces->count; ++i) {
     if (faces->data[i].done) continue;
     TcWalk walk;
-    tc_walk_begin(volume, ray, faces->data[i].id, &walk);
+    tc_walk_begin(volume, ray, &shell->faces[faces->data[i].id], &walk);
+    uint32_t cell;
     double seen = ray->near > walk.z ? ray->near : walk.z;
     do {
       const double z = walk.z, s = walk.s;
-      const uint32_t cell = walk.cell;
+      cell = walk.cell;
       if (!tc_walk_step(volume, ray, &walk)) {
         ++worker->lost;
         return;
       }
       add_segment(volume, pieces, cell, z, walk.z, s, walk.s, &seen, worker, light);
       if (tc_light_opaque(light, pieces)) return;
-    } while (!(walk.cell & TC_SHELL));
+    } while (!tc_shell_ends(shell, walk.cell));
+    const uint32_t vertex_xor = walk.v[0].id ^ walk.v[1].id ^ walk.v[2].id;
     for (int64_t j = i + 1; j < faces->count; ++j) {
-      if (faces->data[j].id == (walk.cell & ~TC_SHELL)) faces->data[j].done = true;
+      if (tc_shell_face_is(&shell->faces[faces->data[j].id], cell, vertex_xor)) faces->data[j].done = true;
     }
   }
 }
@@ -68,12 +71,13 @@ static void cast_faces(const TetcastVolume *volume, const TcPieces *pieces, cons
   }
 }
 
-bool CAST(const TetcastVolume *volume, const TcPieces *pieces, const TcLine *line, TcWorker *worker, TcLight *light) {
+bool CAST(const TcShell *shell, const TcPieces *pieces, const TcLine *line, TcWorker *worker, TcLight *light) {
+  const TetcastVolume *volume = shell->volume;
   TcRay ray;
   *light = tc_light_begin(worker->tolerance.thin, worker->tolerance.opaque);
   if (!tc_ray_begin(volume, line, &ray)) return true;
-  if (!tc_trace(volume, &ray, worker->spans)) return false;
-  if (volume->traversal == TETCAST_TRAVERSAL_SHELL) cast_shell(volume, pieces, &ray, worker, light);
+  if (!tc_trace(shell, &ray, worker->spans)) return false;
+  if (volume->traversal == TETCAST_TRAVERSAL_SHELL) cast_shell(shell, pieces, &ray, worker, light);
   else cast_faces(volume, pieces, &ray, worker, light);
   return true;
 }
@@ -92,7 +96,7 @@ bool KERNEL(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, Tc
         TcLine line;
         TcLight light;
         tc_view_line(&job->view, 2 * column / columns - 1, 1 - 2 * row / rows, &line);
-        if (!CAST(job->volume, job->pieces, &line, worker, &light)) return false;
+        if (!CAST(job->shell, job->pieces, &line, worker, &light)) return false;
         tc_light_end(&light, rgba);
         error += tc_tolerance_bound(&worker->tolerance, &light, worker->segments - segments);
         for (int k = 0; k < 4; ++k) sum[k] += rgba[k];

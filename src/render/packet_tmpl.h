@@ -5,6 +5,7 @@
 #include "render/packet_light.h"
 #include "render/packet_walk.h"
 #include "render/render.h"
+#include "traverse/walk.h"
 
 /* The widths of a packet's pixels. */
 enum { PACKET_X = TC_LANES == 8 ? 4 : 2, PACKET_Y = 2 };
@@ -82,7 +83,7 @@ static void turn_rays(const TcRays *placed, const TcVec rest[3], int kz, TcRays 
 /* ── where the rays enter and leave ── */
 
 typedef struct Query {
-  const TetcastVolume *volume;
+  const TcShell *shell;
   const TcRays *rays;
   TcSpans *spans; /* [TC_LANES] */
 } Query;
@@ -90,13 +91,12 @@ typedef struct Query {
 /* A shell face that the lanes of `lanes` may cross. */
 static void face_candidate(void *user, uint32_t i, unsigned lanes) {
   Query *query = user;
-  const TetcastVolume *volume = query->volume;
-  const TcShellFace *face = &volume->adjacency.shell[i];
+  const TcShellFace *face = &query->shell->faces[i];
   const TcMask mask = tc_mask_of(lanes);
   TcPoints p[3];
   for (int k = 0; k < 3; ++k) {
     double record[4];
-    tc_volume_vertex(volume, face->vertex[k], record);
+    tc_volume_vertex(query->shell->volume, face->vertex[k], record);
     const TcVec component[4] = {tc_set(record[0]), tc_set(record[1]), tc_set(record[2]), tc_set(record[3])};
     p[k] = tc_project_components(query->rays, component, tc_set_word(face->vertex[k]));
   }
@@ -112,13 +112,14 @@ static void face_candidate(void *user, uint32_t i, unsigned lanes) {
   }
 }
 
-static bool trace(const TetcastVolume *volume, const TcRays *rays, unsigned lanes, TcSpans *spans) {
-  Query query = {volume, rays, spans};
+static bool trace(const TcShell *shell, const TcRays *rays, unsigned lanes, TcSpans *spans) {
+  Query query = {shell, rays, spans};
   for (int i = 0; i < TC_LANES; ++i) spans[i].count = 0;
   double from_center[3][TC_LANES], direction[3][TC_LANES];
   memcpy(from_center, rays->from_center, sizeof from_center);
   memcpy(direction, rays->direction, sizeof direction);
-  tc_embree_query_packet(volume->embree, TC_LANES, lanes, from_center[0], direction[0], face_candidate, &query);
+  if (!shell->embree) return true;
+  tc_embree_query_packet(shell->embree, TC_LANES, lanes, from_center[0], direction[0], face_candidate, &query);
   bool ok = true;
   for (int i = 0; i < TC_LANES; ++i) {
     tc_spans_sort(&spans[i]);
@@ -136,10 +137,22 @@ static bool next_start(const TcSpans *spans, int64_t *next, uint32_t *face) {
   return true;
 }
 
-static void mark_done(TcSpans *spans, int64_t from, uint32_t face) {
+/* The path that left `cell` through the face whose vertices have this XOR need not be walked from there. */
+static void mark_done(const TcShell *shell, TcSpans *spans, int64_t from, uint32_t cell, uint32_t vertex_xor) {
   for (int64_t j = from; j < spans->count; ++j) {
-    if (spans->data[j].id == face) spans->data[j].done = true;
+    if (tc_shell_face_is(&shell->faces[spans->data[j].id], cell, vertex_xor)) spans->data[j].done = true;
   }
+}
+
+/* The lanes of `active` that are at the shell. */
+TC_INLINE unsigned at_shell(const TcShell *shell, TcMask active, TcWord cell) {
+  unsigned ended = tc_bits(tc_and(active, tc_gt_word(cell, tc_set_word(TC_SHELL - 1))));
+  if (!shell->visible) return ended;
+  for (unsigned lanes = tc_bits(active) & ~ended; lanes; lanes &= lanes - 1) {
+    const int i = __builtin_ctz(lanes);
+    if (!shell->visible[cell[i] >> TC_CLUSTER_BITS]) ended |= 1U << i;
+  }
+  return ended;
 }
 
 /* ── a packet ── */
@@ -178,7 +191,7 @@ TC_INLINE TcMask cross(const TetcastVolume *volume, const bool wide, const bool 
 }
 
 /* All paths of the rays in `lanes`; returns the number of steps. */
-TC_INLINE int64_t cast_lanes(const TetcastVolume *volume, const bool wide, const bool cells, const TcPieces *pieces,
+TC_INLINE int64_t cast_lanes(const TcShell *shell, const bool wide, const bool cells, const TcPieces *pieces,
                              const TcTolerance *tolerance, const TcRays *rays, unsigned lanes, TcLights *lights, unsigned *stopped,
                              TcWorker *worker) {
   TcSpans *spans = worker->spans;
@@ -192,27 +205,29 @@ TC_INLINE int64_t cast_lanes(const TetcastVolume *volume, const bool wide, const
   }
   TcMask active = tc_mask_of(0);
   TcVec seen = tc_set(0);
-  const TcWord shell = tc_set_word(TC_SHELL - 1);
   int64_t step = 0;
   while (starting || tc_any(active)) {
     if (starting) {
       const TcMask mask = tc_mask_of(starting);
-      tc_walks_begin(volume, wide, rays, mask, face, &walks);
+      tc_walks_begin(shell, wide, rays, mask, face, &walks);
       seen = tc_select(mask, tc_max(walks.z, rays->near), seen);
       active = tc_or(active, mask);
       starting = 0;
     }
-    const TcMask lost = cross(volume, wide, cells, pieces, tolerance->thin, rays, active, &walks, &seen, lights, &segments);
+    const TcWord from = walks.cell;
+    const TcMask lost = cross(shell->volume, wide, cells, pieces, tolerance->thin, rays, active, &walks, &seen, lights, &segments);
     if (++step % 64 == 0) tc_lights_end_block(lights);
     const TcMask opaque = tc_lights_opaque(lights, pieces, tolerance->opaque, active);
     *stopped |= tc_bits(opaque);
     worker->lost += __builtin_popcount(tc_bits(lost));
     active = tc_and_not(active, tc_or(lost, opaque));
-    unsigned ended = tc_bits(tc_and(active, tc_gt_word(walks.cell, shell)));
+    unsigned ended = at_shell(shell, active, walks.cell);
     active = tc_and_not(active, tc_mask_of(ended));
+    if (!ended) continue;
+    const TcWord vertex_xor = walks.v[0].id ^ walks.v[1].id ^ walks.v[2].id;
     for (; ended; ended &= ended - 1) {
       const int i = __builtin_ctz(ended);
-      mark_done(&spans[i], next[i], walks.cell[i] & ~TC_SHELL);
+      mark_done(shell, &spans[i], next[i], from[i], vertex_xor[i]);
       if (next_start(&spans[i], &next[i], &face[i])) starting |= 1U << i;
     }
   }
@@ -222,22 +237,22 @@ TC_INLINE int64_t cast_lanes(const TetcastVolume *volume, const bool wide, const
 }
 
 /* The light of a packet of rays, any rays; *steps is at least the number of each one's segments. */
-TC_INLINE bool cast_packet(const TetcastVolume *volume, const bool wide, const bool cells, const TcPieces *pieces, const Lines *lines,
+TC_INLINE bool cast_packet(const TcShell *shell, const bool wide, const bool cells, const TcPieces *pieces, const Lines *lines,
                            unsigned lanes, TcWorker *worker, TcLight light[TC_LANES], int64_t *steps) {
   TcRays placed, rays;
   TcVec rest[3];
   for (int i = 0; i < TC_LANES; ++i) light[i] = tc_light_begin(worker->tolerance.thin, worker->tolerance.opaque);
-  lanes &= tc_bits(place_rays(volume, lines, &placed, rest));
+  lanes &= tc_bits(place_rays(shell->volume, lines, &placed, rest));
   *steps = 0;
   for (int kz = 0; kz < 3 && lanes; ++kz) {
     const unsigned along = lanes & tc_bits(lanes_along(placed.direction, kz));
     if (!along) continue;
     turn_rays(&placed, rest, kz, &rays);
-    if (!trace(volume, &rays, along, worker->spans)) return false;
+    if (!trace(shell, &rays, along, worker->spans)) return false;
     TcLights lights;
     unsigned stopped = 0;
     tc_lights_begin(&lights);
-    const int64_t most = cast_lanes(volume, wide, cells, pieces, &worker->tolerance, &rays, along, &lights, &stopped, worker);
+    const int64_t most = cast_lanes(shell, wide, cells, pieces, &worker->tolerance, &rays, along, &lights, &stopped, worker);
     *steps = most > *steps ? most : *steps;
     for (unsigned left = along; left; left &= left - 1) {
       const int i = __builtin_ctz(left);
@@ -271,7 +286,7 @@ TC_INLINE bool render_tile(const TcJob *job, const bool wide, const bool cells, 
         TcLight light[TC_LANES];
         int64_t steps;
         view_lines(&job->view, us, vs, &lines);
-        if (!cast_packet(job->volume, wide, cells, job->pieces, &lines, lanes, worker, light, &steps)) return false;
+        if (!cast_packet(job->shell, wide, cells, job->pieces, &lines, lanes, worker, light, &steps)) return false;
         for (int lane = 0; lane < TC_LANES; ++lane) {
           if (light[lane].depth == 0) continue;
           for (int k = 0; k < 3; ++k) sum[lane][k] += light[lane].color[k];
@@ -302,12 +317,12 @@ TILE(tile_wide_cells, true, true)
 TILE(tile_narrow_cells, false, true)
 
 bool PACKET_KERNEL(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker) {
-  const bool wide = job->volume->vertices_are_double, cells = job->volume->association == TETCAST_CELL;
+  const bool wide = job->shell->volume->vertices_are_double, cells = job->shell->volume->association == TETCAST_CELL;
   if (cells) return (wide ? tile_wide_cells : tile_narrow_cells)(job, x0, y0, x1, y1, worker);
   return (wide ? tile_wide : tile_narrow)(job, x0, y0, x1, y1, worker);
 }
 
-bool PACKET_CAST(const TetcastVolume *volume, const TcPieces *pieces, const TcLine *line, int count, TcWorker *worker, TcLight *light) {
+bool PACKET_CAST(const TcShell *shell, const TcPieces *pieces, const TcLine *line, int count, TcWorker *worker, TcLight *light) {
   for (int begin = 0; begin < count; begin += TC_LANES) {
     const int lanes = count - begin < TC_LANES ? count - begin : TC_LANES;
     Lines lines;
@@ -322,9 +337,9 @@ bool PACKET_CAST(const TetcastVolume *volume, const TcPieces *pieces, const TcLi
       }
     }
     const unsigned bits = (1U << lanes) - 1;
-    const bool cells = volume->association == TETCAST_CELL;
-    const bool ok = volume->vertices_are_double ? cast_packet(volume, true, cells, pieces, &lines, bits, worker, part, &steps)
-                                                : cast_packet(volume, false, cells, pieces, &lines, bits, worker, part, &steps);
+    const bool cells = shell->volume->association == TETCAST_CELL;
+    const bool ok = shell->volume->vertices_are_double ? cast_packet(shell, true, cells, pieces, &lines, bits, worker, part, &steps)
+                                                : cast_packet(shell, false, cells, pieces, &lines, bits, worker, part, &steps);
     if (!ok) return false;
     memcpy(light + begin, part, (size_t)lanes * sizeof *light);
   }

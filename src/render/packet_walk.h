@@ -100,20 +100,20 @@ TC_INLINE TcPoints tc_select_points(TcMask m, TcPoints a, TcPoints b) {
 }
 
 /* Sets the lanes of `mask` out from shell faces. */
-TC_INLINE void tc_walks_begin(const TetcastVolume *volume, const bool wide, const TcRays *rays, TcMask mask,
+TC_INLINE void tc_walks_begin(const TcShell *shell, const bool wide, const TcRays *rays, TcMask mask,
                               const uint32_t face[TC_LANES], TcWalks *walks) {
   TcWord id[3] = {{0}, {0}, {0}}, cell = {0};
   unsigned lanes = tc_bits(mask);
   for (; lanes; lanes &= lanes - 1) {
     const int i = __builtin_ctz(lanes);
-    const TcShellFace *shell = &volume->adjacency.shell[face[i]];
-    for (int k = 0; k < 3; ++k) id[k][i] = shell->vertex[k];
-    cell[i] = shell->cell;
+    const TcShellFace *first = &shell->faces[face[i]];
+    for (int k = 0; k < 3; ++k) id[k][i] = first->vertex[k];
+    cell[i] = first->cell;
   }
   TcPoints v[3];
   for (int k = 0; k < 3; ++k) {
     TcVec component[4];
-    tc_load_vertices(volume, wide, id[k], component);
+    tc_load_vertices(shell->volume, wide, id[k], component);
     v[k] = tc_project_components(rays, component, id[k]);
   }
   TcVec e[3];

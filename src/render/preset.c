@@ -20,7 +20,7 @@ static bool measure(const TetcastVolume *volume, const TcPieces *pieces, TcWorke
       line.offset[(axis + 2) % 3] = v * volume->radius;
       line.offset[axis] = -2 * volume->radius;
       TcLight light;
-      if (!tc_cast(volume, pieces, &line, worker, &light)) return false;
+      if (!tc_cast(&volume->shell, pieces, &line, worker, &light)) return false;
       double rgba[4];
       tc_light_end(&light, rgba);
       if (light.depth > 0) depths[(*count)++] = light.depth;

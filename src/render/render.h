@@ -2,12 +2,14 @@
 #ifndef TC_RENDER_RENDER_H
 #define TC_RENDER_RENDER_H
 
+#include <pthread.h>
+
 #include <tetcast/scene.h>
 
 #include "base/base.h"
 #include "optics/tolerance.h"
+#include "traverse/shell.h"
 #include "traverse/trace.h"
-#include "traverse/volume.h"
 
 struct TetcastFrame {
   TetcastContext *context;
@@ -22,6 +24,12 @@ struct TetcastScene {
   TetcastContext *context;
   const TetcastVolume *volume;
   TetcastTransferFunction *transfer; /* NULL: none set yet */
+
+  /* What follows from the volume's field and the transfer function; made by the first frame that needs it. */
+  pthread_mutex_t mutex;
+  int64_t field_number;            /* for which the rest holds; 0: for none */
+  TetcastTransferFunction *scaled; /* in the volume's units */
+  TcShell shell;                   /* of what can be seen */
 };
 
 /* A camera in scaled coordinates: position (u, v) ∈ [−1, 1]² of the picture looks along forward + u right + v up (perspective), or
@@ -55,7 +63,7 @@ typedef struct TcWorker {
 
 /* What a frame is made from; the same for all kernels. */
 typedef struct TcJob {
-  const TetcastVolume *volume;
+  const TcShell *shell;
   const TcPieces *pieces; /* in the volume's units */
   TcView view;
   int64_t width, height;
@@ -70,18 +78,18 @@ TcKernel tc_kernel_exact, tc_kernel_sampled;
 TcKernel tc_kernel_baseline, tc_kernel_avx2, tc_kernel_avx512; /* exact, by packets (packet_tmpl.h); the latter where the target has them */
 
 /* The light of one ray: the slow and simple way, in which a kernel may fall back on and against which it is tested. */
-typedef bool TcCast(const TetcastVolume *volume, const TcPieces *pieces, const TcLine *line, TcWorker *worker, TcLight *light);
+typedef bool TcCast(const TcShell *shell, const TcPieces *pieces, const TcLine *line, TcWorker *worker, TcLight *light);
 TcCast tc_cast, tc_cast_sampled;
 
 /* The same for `count` lines, any lines, by packets. */
-typedef bool TcPacketCast(const TetcastVolume *volume, const TcPieces *pieces, const TcLine *line, int count, TcWorker *worker,
+typedef bool TcPacketCast(const TcShell *shell, const TcPieces *pieces, const TcLine *line, int count, TcWorker *worker,
                           TcLight *light);
 TcPacketCast tc_packet_baseline, tc_packet_avx2, tc_packet_avx512;
 
 TetcastStatus tc_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **scene);
 void tc_scene_destroy(TetcastScene *scene);
 TetcastStatus tc_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer);
-TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
+TetcastStatus tc_scene_render(TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
                               TetcastFrame *frame, TetcastRenderStats *stats);
 
 /* The extinction [1/length] with which a preset over [low, high] makes a good first picture of the volume. */

@@ -11,12 +11,38 @@ TetcastStatus tc_scene_create(TetcastContext *context, const TetcastVolume *volu
   TetcastScene *scene;
   if (!tc_allocate_array(context, (void **)&scene, 1, sizeof *scene, "scene")) return TETCAST_ERROR_MEMORY;
   *scene = (TetcastScene){.context = context, .volume = volume};
+  pthread_mutex_init(&scene->mutex, NULL); /* which can't fail with default attributes */
   *out = scene;
   return TETCAST_OK;
 }
 
+static void forget(TetcastScene *scene) {
+  tc_shell_clear(&scene->shell);
+  tc_transfer_destroy(scene->scaled);
+  scene->scaled = NULL;
+  scene->field_number = 0;
+}
+
+/* Calls for one scene may come at the same time: one of them does the work. None is under way that uses what is replaced, as neither
+ * field nor transfer function change while the scene renders. */
+static TetcastStatus prepare(TetcastScene *scene) {
+  const TetcastVolume *volume = scene->volume;
+  TetcastStatus status = TETCAST_OK;
+  pthread_mutex_lock(&scene->mutex);
+  if (scene->field_number != volume->field_number) {
+    forget(scene);
+    status = tc_transfer_rescale(scene->context, scene->transfer, volume->value_exponent, volume->exponent, &scene->scaled);
+    if (!status) status = tc_shell_build(volume, &scene->scaled->pieces, &scene->shell);
+    if (!status) scene->field_number = volume->field_number;
+  }
+  pthread_mutex_unlock(&scene->mutex);
+  return status;
+}
+
 void tc_scene_destroy(TetcastScene *scene) {
   if (!scene) return;
+  forget(scene);
+  pthread_mutex_destroy(&scene->mutex);
   tc_transfer_destroy(scene->transfer);
   tc_release(scene->context, scene);
 }
@@ -25,6 +51,7 @@ TetcastStatus tc_scene_set_transfer_function(TetcastScene *scene, const TetcastT
   TetcastTransferFunction *copy;
   const TetcastStatus status = tc_transfer_copy(scene->context, transfer, &copy);
   if (status) return status;
+  forget(scene);
   tc_transfer_destroy(scene->transfer);
   scene->transfer = copy;
   return TETCAST_OK;
@@ -74,7 +101,7 @@ static TcKernel *choose_kernel(const TcJob *job, TetcastIsa most, const char **n
 #endif
     {TETCAST_ISA_BASELINE, "baseline", tc_kernel_baseline},
   };
-  const bool packets = job->volume->traversal == TETCAST_TRAVERSAL_SHELL && !job->pieces->narrow;
+  const bool packets = job->shell->volume->traversal == TETCAST_TRAVERSAL_SHELL && !job->pieces->narrow;
   for (size_t i = 0; packets && i < sizeof kernels / sizeof *kernels; ++i) {
     if ((most != TETCAST_ISA_AUTO && kernels[i].isa > most) || !tc_cpu_has(kernels[i].isa)) continue;
     *name = kernels[i].name;
@@ -109,7 +136,7 @@ static TetcastStatus run(TetcastContext *context, Render *render, const TcWorker
   return status;
 }
 
-TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
+TetcastStatus tc_scene_render(TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
                               TetcastFrame *frame, TetcastRenderStats *stats) {
   TetcastContext *context = scene->context;
   const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
@@ -117,29 +144,25 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   TcWorker start = {.sampler = NULL};
   for (int i = 0; i < TC_PACKET; ++i) start.spans[i].context = context;
   TcJob *job = &render.job;
-  job->volume = scene->volume;
   job->width = frame->width;
   job->height = frame->height;
   job->frame = frame;
   sample_grid(desc->samples, &job->samples_x, &job->samples_y);
   TetcastRenderStats sum = {.rays = frame->width * frame->height * desc->samples, .isa = "scalar", .precision = "double"};
-  TetcastTransferFunction *transfer = NULL;
   TcSampler *sampler = NULL;
   const double aspect = (double)frame->width / (double)frame->height;
   TetcastStatus status = tc_view_create(context, camera, scene->volume, aspect, &job->view);
-  if (!status) {
-    status = tc_transfer_rescale(context, scene->transfer, scene->volume->value_exponent, scene->volume->exponent, &transfer);
-  }
+  if (!status) status = prepare(scene);
   if (!status && !exact) status = tc_sampler_create(context, desc->integrator, desc->integrator_n, &sampler);
   if (!status) {
-    job->pieces = &transfer->pieces;
+    job->shell = &scene->shell;
+    job->pieces = &scene->scaled->pieces;
     start.sampler = sampler;
     start.tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);
     if (exact) render.kernel = choose_kernel(job, desc->isa, &sum.isa);
     status = run(context, &render, &start, &desc->progress, &sum);
   }
   tc_sampler_destroy(sampler);
-  tc_transfer_destroy(transfer);
   if (!exact) sum.error = NAN;
   if (!status && stats) *stats = sum;
   return status;

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "traverse/clusters.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/parallel.h"
+#include "traverse/volume.h"
 
 enum { GRAIN = 256 };
 
@@ -58,10 +60,11 @@ static bool take_seeds(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   const Build *build = data;
   for (int64_t c = begin; c < end; ++c) {
-    TcSeed *seed = &build->clusters->seeds[build->clusters->begin[c]];
+    uint32_t seed = build->clusters->begin[c];
     for (uint64_t bits = seeds_of(build->adjacency, c); bits; bits &= bits - 1, ++seed) {
-      seed->cell = (uint32_t)((c << TC_CLUSTER_BITS) + __builtin_ctzll(bits));
-      memcpy(seed->vertex, build->vertices[seed->cell], sizeof seed->vertex);
+      const int place = __builtin_ctzll(bits);
+      build->clusters->places[seed] = (uint8_t)place;
+      memcpy(build->clusters->seeds[seed], build->vertices[(c << TC_CLUSTER_BITS) + place], sizeof *build->clusters->seeds);
     }
   }
   return true;
@@ -81,7 +84,9 @@ TetcastStatus tc_clusters_build(TetcastContext *context, const TcAdjacency *adja
   clusters->begin[0] = 0;
   tc_parallel_for(context, clusters->count, GRAIN, count_seeds, &build, NULL);
   for (int64_t c = 0; c < clusters->count; ++c) clusters->begin[c + 1] += clusters->begin[c];
-  if (!tc_allocate_array(context, (void **)&clusters->seeds, clusters->begin[clusters->count], sizeof *clusters->seeds, "clusters")) {
+  const int64_t seeds = clusters->begin[clusters->count];
+  if (!tc_allocate_array(context, (void **)&clusters->seeds, seeds, sizeof *clusters->seeds, "clusters") ||
+      !tc_allocate_array(context, (void **)&clusters->places, seeds, sizeof *clusters->places, "clusters")) {
     tc_clusters_clear(clusters);
     return TETCAST_ERROR_MEMORY;
   }
@@ -93,6 +98,7 @@ void tc_clusters_clear(TcClusters *clusters) {
   if (!clusters->context) return;
   tc_release(clusters->context, clusters->begin);
   tc_release(clusters->context, clusters->seeds);
+  tc_release(clusters->context, clusters->places);
   tc_release(clusters->context, clusters->range);
   memset(clusters, 0, sizeof *clusters);
 }
@@ -100,7 +106,7 @@ void tc_clusters_clear(TcClusters *clusters) {
 size_t tc_clusters_bytes(const TcClusters *clusters) {
   if (!clusters->seeds) return 0;
   const size_t count = (size_t)clusters->count;
-  return (count + 1) * sizeof *clusters->begin + count * sizeof *clusters->range + clusters->begin[count] * sizeof *clusters->seeds;
+  return (count + 1) * sizeof *clusters->begin + count * sizeof *clusters->range + clusters->begin[count] * (sizeof *clusters->seeds + 1);
 }
 
 /* The neighbour across the face opposite vertex k of a cell: three of its vertices are the same. */
@@ -119,9 +125,10 @@ static void vertices_across(const uint32_t v[4], int k, uint32_t vertex_xor, uin
 int tc_cluster_cells(const TcClusters *clusters, const TcAdjacency *adjacency, int64_t c, uint32_t vertices[TC_CLUSTER][4]) {
   uint64_t found = 0, open = 0;
   for (uint32_t i = clusters->begin[c]; i < clusters->begin[c + 1]; ++i) {
-    const TcSeed *seed = &clusters->seeds[i];
-    const int at = seed->cell & (TC_CLUSTER - 1);
-    memcpy(vertices[at], seed->vertex, sizeof seed->vertex);
+    const int at = clusters->places[i];
+    const uint32_t *seed = clusters->seeds[i];
+    memcpy(vertices[at], seed, sizeof *clusters->seeds);
+    vertices[at][3] = adjacency->cells[(c << TC_CLUSTER_BITS) + at].vertex_xor ^ seed[0] ^ seed[1] ^ seed[2];
     open |= UINT64_C(1) << at;
   }
   found = open;
@@ -140,4 +147,48 @@ int tc_cluster_cells(const TcClusters *clusters, const TcAdjacency *adjacency, i
     }
   }
   return cell_count(adjacency, c);
+}
+
+/* ── values ── */
+
+typedef struct Ranges {
+  TcClusters *clusters;
+  const TetcastVolume *volume;
+} Ranges;
+
+static void extend(double range[2], double value) { /* NaN does nothing */
+  if (value < range[0]) range[0] = value;
+  if (value > range[1]) range[1] = value;
+}
+
+static bool take_ranges(void *data, int64_t begin, int64_t end, int worker) {
+  (void)worker;
+  const Ranges *ranges = data;
+  const TetcastVolume *volume = ranges->volume;
+  for (int64_t c = begin; c < end; ++c) {
+    double range[2] = {INFINITY, -INFINITY};
+    if (volume->association == TETCAST_CELL) {
+      for (int i = 0; i < cell_count(&volume->adjacency, c); ++i) extend(range, volume->cell_values[(c << TC_CLUSTER_BITS) + i]);
+    } else {
+      uint32_t vertices[TC_CLUSTER][4];
+      const int count = tc_cluster_cells(ranges->clusters, &volume->adjacency, c, vertices);
+      for (int i = 0; i < count; ++i) {
+        for (int k = 0; k < 4; ++k) {
+          double record[4];
+          tc_volume_vertex(volume, vertices[i][k], record);
+          extend(range, record[3]);
+        }
+      }
+    }
+    /* One float further out: conversion rounds to nearest. */
+    ranges->clusters->range[c][0] = nextafterf((float)range[0], -INFINITY);
+    ranges->clusters->range[c][1] = nextafterf((float)range[1], INFINITY);
+    if (range[0] > range[1]) ranges->clusters->range[c][0] = INFINITY, ranges->clusters->range[c][1] = -INFINITY;
+  }
+  return true;
+}
+
+void tc_clusters_set_field(TcClusters *clusters, const TetcastVolume *volume) {
+  Ranges ranges = {clusters, volume};
+  if (clusters->seeds) tc_parallel_for(clusters->context, clusters->count, GRAIN, take_ranges, &ranges, NULL);
 }

@@ -2,6 +2,7 @@
 #include "traverse/shell.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/parallel.h"
@@ -79,6 +80,7 @@ static TetcastStatus make_faces(Build *build, TcShell *shell) {
     build->begin[c + 1] += build->begin[c];
   }
   shell->count = total;
+  if (total >= INT64_C(1) << 31) return TETCAST_ERROR_LIMIT; /* the volume's own will do */
   if (!tc_allocate_array(context, &shell->memory, total, sizeof *shell->faces, "visible faces")) return TETCAST_ERROR_MEMORY;
   shell->faces = build->faces = shell->memory;
   tc_parallel_for(context, clusters, GRAIN, take_faces, build, NULL);
@@ -99,7 +101,7 @@ TetcastStatus tc_shell_build(const TetcastVolume *volume, const TcPieces *pieces
     count += visible[c];
   }
   /* With more than half of it visible, entering again and again costs what is saved. */
-  if (2 * count > clusters->count) {
+  if ((getenv("VIS")?atof(getenv("VIS")):0.5)*(double)clusters->count < (double)count) {
     tc_release(context, visible);
     return TETCAST_OK;
   }
@@ -107,6 +109,11 @@ TetcastStatus tc_shell_build(const TetcastVolume *volume, const TcPieces *pieces
   Build build = {.volume = volume, .visible = visible};
   TetcastStatus status = make_faces(&build, shell);
   tc_release(context, build.begin);
+  if (status == TETCAST_ERROR_LIMIT) {
+    tc_shell_clear(shell);
+    *shell = volume->shell;
+    return TETCAST_OK;
+  }
   if (!status && shell->count > 0) {
     status = tc_embree_create(context, shell->count, volume->center, volume->radius, tc_shell_bounds, shell, &shell->embree);
   }

@@ -5,7 +5,7 @@
 #include <string.h>
 
 typedef struct Query {
-  const TetcastVolume *volume;
+  const TcShell *shell;
   const TcRay *ray;
   TcSpans *spans;
 } Query;
@@ -36,9 +36,9 @@ static bool crosses(const TcPoint *a, const TcPoint *b, const TcPoint *c, double
 
 static void shell_candidate(void *user, uint32_t i) {
   Query *query = user;
-  const TcShellFace *face = &query->volume->adjacency.shell[i];
+  const TcShellFace *face = &query->shell->faces[i];
   TcPoint p[3];
-  for (int k = 0; k < 3; ++k) p[k] = tc_project(query->volume, query->ray, face->vertex[k]);
+  for (int k = 0; k < 3; ++k) p[k] = tc_project(query->shell->volume, query->ray, face->vertex[k]);
   TcSpan span = {.id = i};
   if (!crosses(&p[0], &p[1], &p[2], &span.begin, &span.s0)) return;
   span.end = span.begin;
@@ -48,9 +48,9 @@ static void shell_candidate(void *user, uint32_t i) {
 /* A ray crosses none or exactly two of a cell's faces. */
 static void cell_candidate(void *user, uint32_t i) {
   Query *query = user;
-  const uint32_t *vertex = query->volume->adjacency.vertices[i];
+  const uint32_t *vertex = query->shell->volume->adjacency.vertices[i];
   TcPoint p[4];
-  for (int k = 0; k < 4; ++k) p[k] = tc_project(query->volume, query->ray, vertex[k]);
+  for (int k = 0; k < 4; ++k) p[k] = tc_project(query->shell->volume, query->ray, vertex[k]);
   double z[2], s[2];
   int found = 0;
   for (int k = 0; k < 4 && found < 2; ++k) {
@@ -73,11 +73,12 @@ void tc_spans_sort(TcSpans *spans) {
   if (spans->count > 1) qsort(spans->data, (size_t)spans->count, sizeof *spans->data, compare_spans);
 }
 
-bool tc_trace(const TetcastVolume *volume, const TcRay *ray, TcSpans *spans) {
-  Query query = {volume, ray, spans};
+bool tc_trace(const TcShell *shell, const TcRay *ray, TcSpans *spans) {
+  Query query = {shell, ray, spans};
   spans->count = 0;
-  const bool shell = volume->traversal == TETCAST_TRAVERSAL_SHELL;
-  tc_embree_query(volume->embree, ray->from_center, ray->direction, shell ? shell_candidate : cell_candidate, &query);
+  if (shell->embree) {
+    tc_embree_query(shell->embree, ray->from_center, ray->direction, shell->faces ? shell_candidate : cell_candidate, &query);
+  }
   tc_spans_sort(spans);
   return !spans->out_of_memory;
 }

@@ -21,7 +21,7 @@ typedef struct TcSpans {
 } TcSpans;
 
 /* Everything along the line, sorted by begin, end, id: the same order whatever order Embree finds it in. False: out of memory. */
-bool tc_trace(const TetcastVolume *volume, const TcRay *ray, TcSpans *spans);
+bool tc_trace(const TcShell *shell, const TcRay *ray, TcSpans *spans);
 void tc_spans_append(TcSpans *spans, TcSpan span);
 void tc_spans_sort(TcSpans *spans);
 void tc_spans_clear(TcSpans *spans);

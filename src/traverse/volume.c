@@ -27,15 +27,14 @@ static void grow(const TetcastVolume *volume, uint32_t vertex, double low[3], do
   }
 }
 
-/* Bounds of shell face or cell i, for Embree. */
-static void primitive_bounds(const void *user, uint32_t i, double low[3], double high[3]) {
-  const TetcastVolume *volume = user;
-  const uint32_t *vertices = shell_only(volume) ? volume->adjacency.shell[i].vertex : volume->adjacency.vertices[i];
+void tc_shell_bounds(const void *user, uint32_t i, double low[3], double high[3]) {
+  const TcShell *shell = user;
+  const uint32_t *vertices = shell->faces ? shell->faces[i].vertex : shell->volume->adjacency.vertices[i];
   for (int k = 0; k < 3; ++k) {
     low[k] = INFINITY;
     high[k] = -INFINITY;
   }
-  for (int j = 0; j < (shell_only(volume) ? 3 : 4); ++j) grow(volume, vertices[j], low, high);
+  for (int j = 0; j < (shell->faces ? 3 : 4); ++j) grow(shell->volume, vertices[j], low, high);
 }
 
 /* What the loops over vertices and cells need. */
@@ -105,8 +104,13 @@ static TetcastStatus take_cells(TetcastVolume *volume, const TetcastMesh *mesh, 
     return TETCAST_ERROR_MEMORY;
   }
   tc_parallel_for(volume->context, volume->vertex_count, GRAIN, take_ranks, &take, NULL);
-  const TetcastStatus status = tc_adjacency_build(mesh, take.rank, !shell_only(volume), progress, &volume->adjacency);
+  TcAdjacency *adjacency = &volume->adjacency;
+  TetcastStatus status = tc_adjacency_build(mesh, take.rank, true, progress, adjacency);
   tc_release(volume->context, take.rank);
+  if (status || !shell_only(volume)) return status;
+  status = tc_clusters_build(volume->context, adjacency, (const uint32_t(*)[4])adjacency->vertices, &volume->clusters);
+  tc_release(volume->context, adjacency->vertices);
+  adjacency->vertices = NULL;
   return status;
 }
 
@@ -152,8 +156,9 @@ static TetcastStatus build(TetcastVolume *volume, const TetcastMesh *mesh, const
   }
   describe(volume, mesh);
   if (!shell_only(volume)) tc_adjacency_drop_links(&volume->adjacency);
-  return tc_embree_create(volume->context, volume->info.shell_faces, volume->center, volume->radius, primitive_bounds, volume,
-                          &volume->embree);
+  volume->shell = (TcShell){.volume = volume, .faces = volume->adjacency.shell, .count = volume->info.shell_faces};
+  return tc_embree_create(volume->context, volume->shell.count, volume->center, volume->radius, tc_shell_bounds, &volume->shell,
+                          &volume->shell.embree);
 }
 
 TetcastStatus tc_volume_create(TetcastContext *context, const TetcastMesh *mesh, const TetcastVolumeDesc *desc,
@@ -178,7 +183,8 @@ TetcastStatus tc_volume_create(TetcastContext *context, const TetcastMesh *mesh,
 void tc_volume_destroy(TetcastVolume *volume) {
   if (!volume) return;
   TetcastContext *context = volume->context;
-  tc_embree_destroy(volume->embree);
+  tc_embree_destroy(volume->shell.embree);
+  tc_clusters_clear(&volume->clusters);
   if (volume->adjacency.context) tc_adjacency_clear(&volume->adjacency);
   tc_release(context, volume->vertices);
   tc_release(context, volume->vertex_source);
@@ -266,6 +272,8 @@ TetcastStatus tc_volume_set_field(TetcastVolume *volume, const TetcastField *fie
   volume->value_exponent = exponent;
   volume->association = field->association;
   volume->has_field = true;
+  ++volume->field_number;
+  tc_clusters_set_field(&volume->clusters, volume);
   memcpy(volume->info.field_range, range, sizeof range);
   volume->info.field_nonfinite = nonfinite;
   return TETCAST_OK;
@@ -276,7 +284,7 @@ void tc_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info) {
   const size_t record = 4 * (volume->vertices_are_double ? sizeof(double) : sizeof(float));
   const TcAdjacency *adjacency = &volume->adjacency;
   const size_t cells = (size_t)volume->cell_count, shell = (size_t)adjacency->shell_count;
-  info->bytes = sizeof *volume + (size_t)volume->vertex_count * (record + sizeof *volume->vertex_source) + tc_embree_bytes(volume->embree) +
+  info->bytes = sizeof *volume + (size_t)volume->vertex_count * (record + sizeof *volume->vertex_source) + tc_embree_bytes(volume->shell.embree) + tc_clusters_bytes(&volume->clusters) +
                 (adjacency->cells ? cells * sizeof *adjacency->cells : 0) +
                 (adjacency->shell ? shell * sizeof *adjacency->shell : 0) +
                 (adjacency->vertices ? cells * sizeof *adjacency->vertices : 0) +

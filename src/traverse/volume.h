@@ -5,7 +5,19 @@
 #include <tetcast/volume.h>
 
 #include "mesh/adjacency.h"
+#include "traverse/clusters.h"
 #include "traverse/embree.h"
+
+/* What rays are looked for in; made in shell.c, or the volume's own. */
+typedef struct TcShell {
+  TetcastContext *context;
+  const TetcastVolume *volume;
+  const TcShellFace *faces; /* [count]; with TETCAST_TRAVERSAL_FACES none: Embree holds the cells */
+  int64_t count;
+  TcEmbree *embree;         /* over the faces or cells; NULL if there are none */
+  uint8_t *visible;         /* of each cluster; NULL: all are */
+  void *memory;             /* of `faces`, if they are its own */
+} TcShell;
 
 /* Coordinates are stored times 2^−exponent, so that the largest is near 1: exact, and no unit can overflow or underflow later.
  * "Scaled" below means in these units. */
@@ -23,9 +35,11 @@ struct TetcastVolume {
   uint32_t *vertex_source; /* [vertex_count]: the mesh's vertex */
 
   TcAdjacency adjacency; /* without cells where Embree holds every cell; `vertices` of it only there */
-  TcEmbree *embree;
+  TcClusters clusters; /* none where Embree holds every cell */
+  TcShell shell;       /* of the whole volume */
 
   bool has_field;
+  int64_t field_number; /* changes with each field */
   TetcastAssociation association;
   double *cell_values; /* [cell_count] with a cell field; not finite: transparent */
   int value_exponent;  /* values are stored times 2^−value_exponent */
@@ -43,6 +57,9 @@ TetcastStatus tc_volume_create(TetcastContext *context, const TetcastMesh *mesh,
 void tc_volume_destroy(TetcastVolume *volume);
 TetcastStatus tc_volume_set_field(TetcastVolume *volume, const TetcastField *field);
 void tc_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info);
+
+/* Bounds of face or cell i of a TcShell, for Embree. */
+void tc_shell_bounds(const void *shell, uint32_t i, double low[3], double high[3]);
 
 /* x, y, z scaled and the point value. */
 static inline void tc_volume_vertex(const TetcastVolume *volume, uint32_t i, double record[4]) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The walk: from a shell face through cell after cell to the shell face where the ray leaves. The cells a ray meets form paths, each
+/* The walk: from a shell face through cell after cell to the shell face where the ray leaves (shell.h). The cells a ray meets form paths, each
  * face joins at most two cells, so a path that starts at the shell can't return to a cell and ends at the shell: the walk terminates
  * on any adjacency, and every path is found from either end. */
 #ifndef TC_TRAVERSE_WALK_H
@@ -20,16 +20,15 @@ static inline void tc_walk_cross(TcWalk *walk) {
 }
 
 /* Sets out from a shell face that the ray crosses. */
-static inline void tc_walk_begin(const TetcastVolume *volume, const TcRay *ray, uint32_t face, TcWalk *walk) {
-  const TcShellFace *shell = &volume->adjacency.shell[face];
-  for (int k = 0; k < 3; ++k) walk->v[k] = tc_project(volume, ray, shell->vertex[k]);
+static inline void tc_walk_begin(const TetcastVolume *volume, const TcRay *ray, const TcShellFace *face, TcWalk *walk) {
+  for (int k = 0; k < 3; ++k) walk->v[k] = tc_project(volume, ray, face->vertex[k]);
   if (tc_edge(&walk->v[0], &walk->v[1]) < 0) {
     const TcPoint t = walk->v[1];
     walk->v[1] = walk->v[2];
     walk->v[2] = t;
   }
   for (int k = 0; k < 3; ++k) walk->edge[k] = tc_edge(&walk->v[k], &walk->v[(k + 1) % 3]);
-  walk->cell = shell->cell;
+  walk->cell = face->cell;
   tc_walk_cross(walk);
 }
 
@@ -55,6 +54,16 @@ static inline bool tc_walk_step(const TetcastVolume *volume, const TcRay *ray, T
   walk->cell = cell->neighbor[rank];
   tc_walk_cross(walk);
   return true;
+}
+
+/* Whether a walk that has `cell` ahead is at the shell. */
+static inline bool tc_shell_ends(const TcShell *shell, uint32_t cell) {
+  return (cell & TC_SHELL) || (shell->visible && !shell->visible[cell >> TC_CLUSTER_BITS]);
+}
+
+/* Whether a face of the shell is that of cell `from` with these vertices: of one cell's faces each has another XOR. */
+static inline bool tc_shell_face_is(const TcShellFace *face, uint32_t from, uint32_t vertex_xor) {
+  return face->cell == from && (face->vertex[0] ^ face->vertex[1] ^ face->vertex[2]) == vertex_xor;
 }
 
 #endif

@@ -146,7 +146,7 @@ static void flush(Caster *caster) {
     if (!tc_cpu_has(kernels[i].isa)) continue;
     TcLight light[TC_PACKET];
     caster->worker.lost = 0;
-    assert_true(kernels[i].cast(volume, &caster->gray->pieces, caster->queue, caster->queued, &caster->worker, light));
+    assert_true(kernels[i].cast(&volume->shell, &caster->gray->pieces, caster->queue, caster->queued, &caster->worker, light));
     assert_int_equal(caster->worker.lost, 0);
     for (int j = 0; j < caster->queued; ++j) {
       const double length = ldexp(light[j].depth / 1e-9, volume->exponent);
@@ -176,7 +176,7 @@ static double length_of(Caster *caster, int traversal, const double eye[3], cons
   for (int k = 0; k < 3; ++k) line.eye[k] = ldexp(eye[k], -volume->exponent);
   TcLight light;
   caster->worker.segments = caster->worker.lost = 0;
-  assert_true(tc_cast(volume, &caster->gray->pieces, &line, &caster->worker, &light));
+  assert_true(tc_cast(&volume->shell, &caster->gray->pieces, &line, &caster->worker, &light));
   assert_int_equal(caster->worker.lost, 0);
   *segments = caster->worker.segments;
   double rgba[4];

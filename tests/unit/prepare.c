@@ -336,7 +336,7 @@ static void memory_is_bounded(void **state) {
     const long long resident = meter.live - before - 4 * info.left_out; /* sources are not moved once more */
     const long long bound = 24 * info.tetrahedra + 40 * cube.vertex_count + 16 * info.shell_faces + 4096;
     assert_true(doubled == (info.left_out > 0) && resident <= bound);
-    const long long counted = (long long)(info.bytes - tc_embree_bytes(volume->embree));
+    const long long counted = (long long)(info.bytes - tc_embree_bytes(volume->shell.embree));
     assert_true(counted >= resident - 4096 && counted <= bound);
     tetcast_volume_destroy(&volume);
     assert_true(meter.live == before);
