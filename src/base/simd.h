@@ -154,19 +154,12 @@ TC_INLINE TcLong tc_to_long(TcVec a) { return __builtin_convertvector(a, TcLong)
 
 /* ── memory ── */
 
-/* words[index · stride + offset], in lanes of the mask; 0 elsewhere. */
+/* words[index · stride + offset]; lanes not in the mask have words[offset]. One by one: gather instructions are no faster. */
 TC_INLINE TcWord tc_gather_word(TcMask mask, const uint32_t *words, TcWord index, int stride, TcWord offset) {
-#if defined(TC_SIMD_AVX512)
-  const TcLong at = (TcLong)_mm512_cvtepu32_epi64((__m256i)index) * stride + (TcLong)_mm512_cvtepu32_epi64((__m256i)offset);
-  return (TcWord)_mm512_mask_i64gather_epi32(_mm256_setzero_si256(), mask, (__m512i)at, words, 4);
-#else
-  TcWord result = {0};
-  const unsigned bits = tc_bits(mask);
-  for (int i = 0; i < TC_LANES; ++i) {
-    if (bits >> i & 1) result[i] = words[(size_t)index[i] * (size_t)stride + offset[i]];
-  }
+  const TcWord safe = tc_select_word(mask, index, tc_set_word(0));
+  TcWord result;
+  for (int i = 0; i < TC_LANES; ++i) result[i] = words[(size_t)safe[i] * (size_t)stride + offset[i]];
   return result;
-#endif
 }
 
 /* table[index], indices at least 0. */

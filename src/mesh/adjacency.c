@@ -5,7 +5,8 @@
  *
  * Bytes per cell: the result 20, whose place the vertices of the mesh's cells have until they are sorted; records 8 and the space to
  * sort them 8; the sorted cells' vertices 16 and sources 4: 56 in all, of which 24 stay. The caller's arrays come on top: 4 per vertex for
- * the ranks, 20 or 36 for the volume's vertices, about 6 or 7 per cell. Only a vertex at which nearly all cells meet needs more, up to 48. */
+ * the ranks, 20 or 36 for the volume's vertices, about 6 or 7 per cell. Only a vertex at which nearly all cells meet needs more, up
+ * to 48. */
 #include "mesh/adjacency.h"
 
 #include <stdlib.h>

@@ -19,8 +19,8 @@ TcTolerance tc_tolerance_begin(const TcPieces *pieces, double tolerance) {
   return result;
 }
 
-double tc_tolerance_bound(const TcTolerance *tolerance, const TcLight *light, int64_t segments) {
-  const double alpha = -expm1(-light->depth), color = fmax(1, tolerance->color);
+double tc_tolerance_bound(const TcTolerance *tolerance, const TcLight *light, double alpha, int64_t segments) {
+  const double color = fmax(1, tolerance->color);
   const double left = light->stopped ? exp(-light->depth) * color : 0;
   return left + alpha * color * (2 * tolerance->relative / (1 - tolerance->relative) + rounding(segments));
 }

@@ -23,7 +23,7 @@ typedef struct TcTolerance {
 /* Spends half of `tolerance` on evaluation and half on ending rays; 0: exact. */
 TcTolerance tc_tolerance_begin(const TcPieces *pieces, double tolerance);
 
-/* Bound on the error of each channel, after tc_light_end(): of a light made from `segments` segments. */
-double tc_tolerance_bound(const TcTolerance *tolerance, const TcLight *light, int64_t segments);
+/* Bound on the error of each channel, after tc_light_end(): of a light of this opacity, made from `segments` segments. */
+double tc_tolerance_bound(const TcTolerance *tolerance, const TcLight *light, double alpha, int64_t segments);
 
 #endif

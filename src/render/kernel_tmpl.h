@@ -98,7 +98,7 @@ bool KERNEL(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, Tc
         tc_view_line(&job->view, 2 * column / columns - 1, 1 - 2 * row / rows, &line);
         if (!CAST(job->shell, job->pieces, &line, worker, &light)) return false;
         tc_light_end(&light, rgba);
-        error += tc_tolerance_bound(&worker->tolerance, &light, worker->segments - segments);
+        error += tc_tolerance_bound(&worker->tolerance, &light, rgba[3], worker->segments - segments);
         for (int k = 0; k < 4; ++k) sum[k] += rgba[k];
       }
       for (int k = 0; k < 4; ++k) sum[k] /= samples;

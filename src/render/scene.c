@@ -59,8 +59,6 @@ TetcastStatus tc_scene_set_transfer_function(TetcastScene *scene, const TetcastT
 
 /* ── a frame ── */
 
-enum { TILE = 16 };
-
 typedef struct Render {
   TcJob job;
   TcKernel *kernel;
@@ -72,8 +70,8 @@ static bool render_tiles(void *data, int64_t begin, int64_t end, int worker) {
   Render *render = data;
   const TcJob *job = &render->job;
   for (int64_t i = begin; i < end; ++i) {
-    const int64_t x0 = i % render->tiles_x * TILE, y0 = i / render->tiles_x * TILE;
-    const int64_t x1 = x0 + TILE < job->width ? x0 + TILE : job->width, y1 = y0 + TILE < job->height ? y0 + TILE : job->height;
+    const int64_t x0 = i % render->tiles_x * TC_TILE, y0 = i / render->tiles_x * TC_TILE;
+    const int64_t x1 = x0 + TC_TILE < job->width ? x0 + TC_TILE : job->width, y1 = y0 + TC_TILE < job->height ? y0 + TC_TILE : job->height;
     if (!render->kernel(job, x0, y0, x1, y1, &render->workers[worker])) return false;
   }
   return true;
@@ -119,15 +117,15 @@ static TetcastStatus run(TetcastContext *context, Render *render, const TcWorker
     return TETCAST_ERROR_MEMORY;
   }
   for (int i = 0; i < threads; ++i) render->workers[i] = *start;
-  render->tiles_x = (render->job.width + TILE - 1) / TILE;
-  const int64_t tiles = render->tiles_x * ((render->job.height + TILE - 1) / TILE);
+  render->tiles_x = (render->job.width + TC_TILE - 1) / TC_TILE;
+  const int64_t tiles = render->tiles_x * ((render->job.height + TC_TILE - 1) / TC_TILE);
   TetcastStatus status = tc_parallel_for(context, tiles, 1, render_tiles, render, progress);
   for (int i = 0; i < threads; ++i) {
     TcWorker *worker = &render->workers[i];
     stats->segments += worker->segments;
     stats->lost += worker->lost;
     stats->error = fmax(stats->error, worker->error);
-    for (int j = 0; j < TC_PACKET; ++j) {
+    for (int j = 0; j < TC_PACKETS * TC_PACKET; ++j) {
       if (worker->spans[j].out_of_memory) status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: hits of a ray");
       tc_spans_clear(&worker->spans[j]);
     }
@@ -142,7 +140,7 @@ TetcastStatus tc_scene_render(TetcastScene *scene, const TetcastCamera *camera, 
   const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
   Render render = {.kernel = tc_kernel_sampled};
   TcWorker start = {.sampler = NULL};
-  for (int i = 0; i < TC_PACKET; ++i) start.spans[i].context = context;
+  for (int i = 0; i < TC_PACKETS * TC_PACKET; ++i) start.spans[i].context = context;
   TcJob *job = &render.job;
   job->width = frame->width;
   job->height = frame->height;

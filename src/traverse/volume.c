@@ -11,7 +11,7 @@
 #include "mesh/stage.h"
 #include "traverse/rayspace.h"
 
-/* Resident: 24 bytes per cell (20 and its source), 20 or 36 per vertex (the record and its source), 16 per shell face and what Embree
+/* Resident: 25 bytes per cell (20, its source, and its share of a cluster), 20 or 36 per vertex (the record and its source), 16 per shell face and what Embree
  * takes. While preparing, 56 per cell and 4 per vertex more at most (adjacency.c); Embree begins when that is given back. */
 
 enum { GRAIN = 1 << 14, AHEAD = 32 };
