@@ -45,7 +45,12 @@ TC_INLINE TcMask tc_eq(TcVec a, TcVec b) { return _mm512_cmp_pd_mask((__m512d)a,
 TC_INLINE TcMask tc_and(TcMask a, TcMask b) { return a & b; }
 TC_INLINE TcMask tc_or(TcMask a, TcMask b) { return a | b; }
 TC_INLINE TcMask tc_and_not(TcMask a, TcMask b) { return (TcMask)(a & ~b); }
-TC_INLINE TcVec tc_select(TcMask m, TcVec a, TcVec b) { return (TcVec)_mm512_mask_blend_pd(m, (__m512d)b, (__m512d)a); }
+TC_INLINE TcVec tc_select(TcMask m, TcVec a, TcVec b) {
+  TcVec result = (TcVec)_mm512_mask_blend_pd(m, (__m512d)b, (__m512d)a);
+  /* Keeps the compiler from turning this, and what stores it, into a masked store, from which loads have to wait. */
+  __asm__("" : "+v"(result));
+  return result;
+}
 TC_INLINE TcWord tc_select_word(TcMask m, TcWord a, TcWord b) { return (TcWord)_mm256_mask_blend_epi32(m, (__m256i)b, (__m256i)a); }
 TC_INLINE TcMask tc_gt_word(TcWord a, TcWord b) { return _mm256_cmpgt_epu32_mask((__m256i)a, (__m256i)b); }
 
@@ -133,8 +138,16 @@ TC_INLINE TcVec tc_product_rest(TcVec a, TcVec b, TcVec p) {
 }
 
 TC_INLINE TcVec tc_abs(TcVec a) { return (TcVec)((TcLong)a & INT64_MAX); }
-TC_INLINE TcVec tc_min(TcVec a, TcVec b) { return tc_select(tc_lt(a, b), a, b); } /* b if one is NaN */
+#if defined(TC_SIMD_AVX512)
+TC_INLINE TcVec tc_min(TcVec a, TcVec b) { return (TcVec)_mm512_min_pd((__m512d)a, (__m512d)b); } /* b if one is NaN */
+TC_INLINE TcVec tc_max(TcVec a, TcVec b) { return (TcVec)_mm512_max_pd((__m512d)a, (__m512d)b); }
+#elif defined(TC_SIMD_AVX2)
+TC_INLINE TcVec tc_min(TcVec a, TcVec b) { return (TcVec)_mm256_min_pd((__m256d)a, (__m256d)b); }
+TC_INLINE TcVec tc_max(TcVec a, TcVec b) { return (TcVec)_mm256_max_pd((__m256d)a, (__m256d)b); }
+#else
+TC_INLINE TcVec tc_min(TcVec a, TcVec b) { return tc_select(tc_lt(a, b), a, b); }
 TC_INLINE TcVec tc_max(TcVec a, TcVec b) { return tc_select(tc_gt(a, b), a, b); }
+#endif
 
 TC_INLINE TcVec tc_sqrt(TcVec a) {
 #if defined(TC_SIMD_AVX512)
@@ -154,22 +167,32 @@ TC_INLINE TcLong tc_to_long(TcVec a) { return __builtin_convertvector(a, TcLong)
 
 /* ── memory ── */
 
-/* words[index · stride + offset]; lanes not in the mask have words[offset]. One by one: gather instructions are no faster. */
-TC_INLINE TcWord tc_gather_word(TcMask mask, const uint32_t *words, TcWord index, int stride, TcWord offset) {
-  const TcWord safe = tc_select_word(mask, index, tc_set_word(0));
-  TcWord result;
-  for (int i = 0; i < TC_LANES; ++i) result[i] = words[(size_t)safe[i] * (size_t)stride + offset[i]];
-  return result;
-}
-
-/* table[index], indices at least 0. */
-TC_INLINE TcVec tc_gather(const double *table, TcLong index) {
+/* Of records of five words each, those at `index`: component[k][i] is word k of lane i's. May read 12 bytes beyond a record. Loads and
+ * shuffles, as gather instructions take longer. */
+TC_INLINE void tc_load_fives(const uint32_t *words, TcWord index, TcWord component[5]) {
 #if defined(TC_SIMD_AVX512)
-  return (TcVec)_mm512_i64gather_pd((__m512i)index, table, 8);
+  const __m512i wide = _mm512_cvtepu32_epi64((__m256i)index), offset = _mm512_add_epi64(_mm512_slli_epi64(wide, 4), _mm512_slli_epi64(wide, 2));
+  int64_t at[8];
+  memcpy(at, &offset, sizeof at);
+  const char *bytes = (const char *)words;
+  __m512i pair[4]; /* records i and i + 4 */
+  for (int i = 0; i < 4; ++i) {
+    pair[i] = _mm512_inserti64x4(_mm512_castsi256_si512(_mm256_loadu_si256((const __m256i *)(const void *)(bytes + at[i]))),
+                                 _mm256_loadu_si256((const __m256i *)(const void *)(bytes + at[i + 4])), 1);
+  }
+  const __m512i a = _mm512_unpacklo_epi32(pair[0], pair[1]), b = _mm512_unpackhi_epi32(pair[0], pair[1]);
+  const __m512i c = _mm512_unpacklo_epi32(pair[2], pair[3]), d = _mm512_unpackhi_epi32(pair[2], pair[3]);
+  const __m512i word[4] = {_mm512_unpacklo_epi64(a, c), _mm512_unpackhi_epi64(a, c), _mm512_unpacklo_epi64(b, d),
+                           _mm512_unpackhi_epi64(b, d)};
+  const __m512i even = _mm512_setr_epi64(0, 1, 4, 5, 0, 0, 0, 0), odd = _mm512_setr_epi64(2, 3, 6, 7, 0, 0, 0, 0);
+  for (int k = 0; k < 4; ++k) component[k] = (TcWord)_mm512_castsi512_si256(_mm512_permutexvar_epi64(even, word[k]));
+  component[4] = (TcWord)_mm512_castsi512_si256(_mm512_permutexvar_epi64(odd, word[0]));
 #else
-  TcVec result;
-  for (int i = 0; i < TC_LANES; ++i) result[i] = table[index[i]];
-  return result;
+  for (int k = 0; k < 5; ++k) {
+    uint32_t word[TC_LANES];
+    for (int i = 0; i < TC_LANES; ++i) word[i] = words[(size_t)index[i] * 5 + (size_t)k];
+    memcpy(&component[k], word, sizeof word);
+  }
 #endif
 }
 

@@ -317,7 +317,7 @@ static TetcastStatus stopped(const Build *build, TetcastStatus status) {
 static TetcastStatus sort_cells(Build *build, const TetcastProgress *progress) {
   TetcastContext *context = build->context;
   const int64_t all = build->mesh_cell_count;
-  if (!tc_allocate_array(context, (void **)&build->cells, all, sizeof *build->cells, "cells") ||
+  if (!tc_allocate_array(context, (void **)&build->cells, all + 1, sizeof *build->cells, "cells") ||
       !tc_allocate_array(context, (void **)&build->records, all, sizeof *build->records, "cells") ||
       !tc_allocate_array(context, (void **)&build->scratch, all, sizeof *build->scratch, "cells")) {
     return TETCAST_ERROR_MEMORY;
@@ -337,7 +337,7 @@ static TetcastStatus sort_cells(Build *build, const TetcastProgress *progress) {
   if (atomic_load(&build->duplicates) > 0) drop_duplicates(build);
   if (build->cell_count == all) return TETCAST_OK;
   tc_release(context, build->cells);
-  return tc_allocate_array(context, (void **)&build->cells, build->cell_count, sizeof *build->cells, "cells") ? TETCAST_OK
+  return tc_allocate_array(context, (void **)&build->cells, build->cell_count + 1, sizeof *build->cells, "cells") ? TETCAST_OK
                                                                                                              : TETCAST_ERROR_MEMORY;
 }
 

@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The kernel for packets of neighbouring rays, compiled once for each instruction set: the including file defines
  *     PACKET_KERNEL, PACKET_CAST   the names of the two functions
- * It computes what the scalar kernel (kernel_tmpl.h) does: the same faces and cells, and light that agrees to rounding.
- *
- * A step is a chain of loads and decisions that takes longer than its instructions: so several packets are under way, in turn. */
+ * It computes what the scalar kernel (kernel_tmpl.h) does: the same faces and cells, and light that agrees to rounding. */
 #include "render/packet_light.h"
 #include "render/packet_rays.h"
 #include "traverse/walk.h"
 
 enum {
   PACKET_X = TC_LANES == 8 ? 4 : 2, /* a packet's pixels */
-  PACKET_Y = 2,
-  UNDER_WAY = TC_PACKETS
+  PACKET_Y = 2
 };
 
 typedef struct Packet {
@@ -110,7 +107,23 @@ static bool packet_begin(const TcShell *shell, const TcRays *placed, const TcVec
 
 static bool packet_runs(const Packet *packet) { return packet->starting || tc_any(packet->active); }
 
-/* One step of a packet. */
+/* Lanes that end, and perhaps set out anew. */
+static __attribute__((noinline)) void leave(const TcShell *shell, Packet *packet, TcWorker *worker, TcWord from, TcMask lost,
+                                            TcMask opaque, unsigned ended) {
+  const TcWalks *walks = &packet->walks;
+  packet->stopped |= tc_bits(opaque);
+  worker->lost += __builtin_popcount(tc_bits(lost));
+  ended &= ~(tc_bits(opaque) | tc_bits(lost));
+  packet->active = tc_and_not(tc_and_not(packet->active, tc_or(lost, opaque)), tc_mask_of(ended));
+  const TcWord vertex_xor = walks->v[0].id ^ walks->v[1].id ^ walks->v[2].id;
+  for (; ended; ended &= ended - 1) {
+    const int i = __builtin_ctz(ended);
+    mark_done(shell, &packet->spans[i], packet->next[i], from[i], vertex_xor[i]);
+    if (next_start(&packet->spans[i], &packet->next[i], &packet->face[i])) packet->starting |= 1U << i;
+  }
+}
+
+/* Steps of a packet until a lane sets out anew. */
 TC_INLINE void advance(const TcShell *shell, const bool wide, const bool cells, const TcPieces *pieces, TcWorker *worker,
                        Packet *packet) {
   if (packet->starting) {
@@ -122,22 +135,17 @@ TC_INLINE void advance(const TcShell *shell, const bool wide, const bool cells, 
   }
   TcWalks *walks = &packet->walks;
   TcMask active = packet->active;
-  const TcWord from = walks->cell;
-  const TcMask lost = cross(shell->volume, wide, cells, pieces, worker->tolerance.thin, &packet->rays, active, walks, &packet->seen,
-                            &packet->lights, &worker->segments);
-  if (++packet->steps % 64 == 0) tc_lights_end_block(&packet->lights);
-  const TcMask opaque = tc_lights_opaque(&packet->lights, pieces, worker->tolerance.opaque, active);
-  packet->stopped |= tc_bits(opaque);
-  worker->lost += __builtin_popcount(tc_bits(lost));
-  active = tc_and_not(active, tc_or(lost, opaque));
-  unsigned ended = at_shell(shell, active, walks->cell);
-  packet->active = tc_and_not(active, tc_mask_of(ended));
-  if (!ended) return;
-  const TcWord vertex_xor = walks->v[0].id ^ walks->v[1].id ^ walks->v[2].id;
-  for (; ended; ended &= ended - 1) {
-    const int i = __builtin_ctz(ended);
-    mark_done(shell, &packet->spans[i], packet->next[i], from[i], vertex_xor[i]);
-    if (next_start(&packet->spans[i], &packet->next[i], &packet->face[i])) packet->starting |= 1U << i;
+  for (;;) {
+    const TcWord from = walks->cell;
+    const TcMask lost = cross(shell->volume, wide, cells, pieces, worker->tolerance.thin, &packet->rays, active, walks, &packet->seen,
+                              &packet->lights, &worker->segments);
+    if (++packet->steps % 64 == 0) tc_lights_end_block(&packet->lights);
+    const TcMask opaque = tc_lights_opaque(&packet->lights, pieces, worker->tolerance.opaque, active);
+    const unsigned ended = at_shell(shell, active, walks->cell);
+    if (!(tc_bits(opaque) | tc_bits(lost) | ended)) continue;
+    leave(shell, packet, worker, from, lost, opaque, ended);
+    active = packet->active;
+    if (packet->starting || !tc_any(active)) return;
   }
 }
 
@@ -250,22 +258,13 @@ static void store_tile(const Tile *tile) {
 bool PACKET_KERNEL(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker) {
   Tile tile = {.job = job, .worker = worker, .x0 = x0, .y0 = y0, .x1 = x1, .y1 = y1, .x = x0, .y = y0};
   Advance *const step = advance_for(job->shell->volume);
-  Packet packets[UNDER_WAY];
-  int under_way = 0;
-  bool more[UNDER_WAY];
-  for (int i = 0; i < UNDER_WAY; ++i) {
-    if (!next_packet(&tile, &worker->spans[i * TC_PACKET], &packets[i], &more[i])) return false;
-    under_way += more[i];
-  }
-  while (under_way > 0) {
-    for (int i = 0; i < UNDER_WAY; ++i) {
-      if (!more[i]) continue;
-      step(job->shell, job->pieces, worker, &packets[i]);
-      if (packet_runs(&packets[i])) continue;
-      finish_packet(&tile, &packets[i]);
-      if (!next_packet(&tile, packets[i].spans, &packets[i], &more[i])) return false;
-      under_way -= !more[i];
-    }
+  Packet packet;
+  for (;;) {
+    bool more;
+    if (!next_packet(&tile, worker->spans, &packet, &more)) return false;
+    if (!more) break;
+    while (packet_runs(&packet)) step(job->shell, job->pieces, worker, &packet);
+    finish_packet(&tile, &packet);
   }
   store_tile(&tile);
   return true;

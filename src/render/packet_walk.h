@@ -135,7 +135,9 @@ TC_INLINE TcMask tc_walks_step(const TetcastVolume *volume, const bool wide, con
   const uint32_t *cells = (const uint32_t *)(const void *)volume->adjacency.cells;
   TcPoints *v = walks->v;
   const TcWord zero = {0};
-  const TcWord id = tc_select_word(active, tc_gather_word(active, cells, walks->cell, 5, zero) ^ v[0].id ^ v[1].id ^ v[2].id, zero);
+  TcWord word[5]; /* the cells: XOR of vertices, neighbours */
+  tc_load_fives(cells, tc_select_word(active, walks->cell, zero), word);
+  const TcWord id = tc_select_word(active, word[0] ^ v[0].id ^ v[1].id ^ v[2].id, zero);
   TcVec component[4], e[3];
   tc_load_vertices(volume, wide, id, component);
   const TcPoints q = tc_project_components(rays, component, id);
@@ -144,9 +146,14 @@ TC_INLINE TcMask tc_walks_step(const TetcastVolume *volume, const bool wide, con
   for (int k = 0; k < 3; ++k) positive[k] = tc_and(active, tc_gt(e[k], tc_set(0)));
   for (int k = 0; k < 3; ++k) out[k] = tc_and_not(positive[(k + 2) % 3], positive[(k + 1) % 3]);
   const TcWord left = tc_select_word(out[0], v[0].id, tc_select_word(out[1], v[1].id, v[2].id));
-  TcWord rank = tc_select_word(tc_gt_word(left, id), tc_set_word(2), tc_set_word(1)); /* 1: the neighbours follow the XOR */
-  for (int k = 0; k < 3; ++k) rank = tc_select_word(tc_gt_word(left, v[k].id), rank + 1, rank);
-  const TcWord next = tc_gather_word(active, cells, walks->cell, 5, rank);
+  /* The neighbour of the rank of `left` among the four. Each comparison that holds moves one up. */
+  const TcMask above[4] = {tc_gt_word(left, id), tc_gt_word(left, v[0].id), tc_gt_word(left, v[1].id), tc_gt_word(left, v[2].id)};
+  TcWord last = word[4], third = word[3], second = word[2], next = word[1];
+  for (int k = 0; k < 4; ++k) {
+    next = tc_select_word(above[k], second, next);
+    second = tc_select_word(above[k], third, second);
+    if (k < 3) third = tc_select_word(above[k], last, third);
+  }
   walks->cell = tc_select_word(active, next, walks->cell);
   for (int k = 0; k < 3; ++k) {
     const TcVec edge = tc_select(out[(k + 1) % 3], e[k], walks->edge[k]);
