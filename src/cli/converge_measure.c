@@ -49,6 +49,7 @@ TetcastStatus converge_render(Converge *converge, const TetcastScene *scene, con
   desc.integrator = row->integrator;
   if (row->n > 0)
     desc.integrator_n = row->n;
+  desc.isa = (TetcastIsa)converge->options.isa;
   desc.tolerance = row->tolerance;
   desc.progress = converge_progress(converge, weight);
   TetcastRenderStats stats;

@@ -82,6 +82,7 @@ static int render(Run *run) {
   stats->render_seconds = cli_allocate(sizeof(double) * (size_t)stats->repeats);
   TetcastRenderDesc desc = tetcast_render_desc_default();
   desc.samples = (int)run->options.samples;
+  desc.isa = (TetcastIsa)run->options.isa;
   desc.tolerance = stats->tolerance = run->options.tolerance;
   if (run->options.integrator)
     render_option_integrator(run->options.integrator, &desc.integrator, &desc.integrator_n);

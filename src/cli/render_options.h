@@ -31,6 +31,7 @@ typedef enum OptionId {
   OPTION_TOLERANCE,
   OPTION_CHANNELS,
   OPTION_TRAVERSAL,
+  OPTION_ISA,
   OPTION_THREADS,
   OPTION_REPEAT,
   OPTION_PIXEL_TYPE,
@@ -51,7 +52,7 @@ typedef struct RenderOptions {
   char *input, *output, *array, *transfer, *preset, *integrator, *channels, *stats, *scene, *save_scene;
   json_t *transfer_object; /* of a scene file; instead of transfer */
   double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], tolerance, threads, repeat;
-  int opacity_model, traversal, pixel_type; /* values of the library's enumerations */
+  int opacity_model, traversal, isa, pixel_type; /* values of the library's enumerations */
   int quiet, refine, no_plots;
   uint32_t given;  /* bit 1 << OptionId: has a value from command line or scene file */
   uint32_t source; /* the same for the source being read alone */

@@ -120,7 +120,7 @@ static void add_gauss(TcLight *light, const TcPieces *pieces, const TcSampler *s
   for (int i = 0; i < n; ++i) {
     double inner = 0;
     for (int j = 0; j < n; ++j) inner += sampler->inner[i][j] * o[j].extinction * length;
-    const double weight = sampler->weights[i] * o[i].extinction * length * exp(-inner);
+    const double weight = sampler->weights[i] * o[i].extinction * length * exp(-fmax(inner, 0)); /* a polynomial may undershoot */
     for (int k = 0; k < 3; ++k) emitted[k] += weight * o[i].color[k];
   }
   add(light, emitted, depth);

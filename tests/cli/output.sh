@@ -91,6 +91,12 @@ contains '"threads": 2,'
 contains '"isa": "[a-z0-9]+",'
 contains '"precision": "double",'
 contains '"traversal": "faces"'
+for isa in scalar baseline; do
+  accept render cube.vtu -o s.png --size 40x30 --isa $isa --stats stats.json
+  output=$(cat stats.json)
+  contains "\"isa\": \"$isa\","
+done
+accept render cube.vtu -o s.png --size 40x30 --samples 4 --repeat 3 --threads 2 --traversal faces --stats stats.json
 times=$(tr -d ' \n' <stats.json | sed 's/.*"render_seconds":\[//; s/\].*//' | tr ',' '\n' | grep -c .)
 [ "$times" = 3 ] || fail "$times render_seconds instead of 3"
 "$tetcast" render cube.vtu -o s.png --size 9x9 --stats /dev/stdout | grep -q '"rays": 81' ||

@@ -53,6 +53,7 @@ refuse 2 'viridis' render a.vtu --preset nope
 refuse 2 'uint8' render a.vtu --pixel-type int8
 refuse 2 'uint8' render a.vtu --pixel-type ''
 refuse 2 'shell or faces' render a.vtu --traversal walk
+refuse 2 'avx512' render a.vtu --isa sse9
 refuse 2 'vtk-unstructured' render a.vtu --opacity-model vtk
 for integrator in exact:2 midpoint midpoint: midpoint:0 midpoint:1.5 gauss:17 table:1 table:x simpson:3; do
   refuse 2 'gauss:N' render a.vtu --integrator "$integrator"
