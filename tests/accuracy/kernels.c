@@ -77,7 +77,7 @@ static void kernels_agree(void **state) {
     int64_t segments = 0;
     for (int isa = TETCAST_ISA_SCALAR; isa <= TETCAST_ISA_AVX512; ++isa) {
       if (!tc_cpu_has((TetcastIsa)isa)) continue;
-      char number[8];
+      char number[16];
       snprintf(number, sizeof number, "%d", isa);
       setenv("TETCAST_TEST_ISA", number, 1);
       TetcastRenderStats stats;
