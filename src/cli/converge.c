@@ -58,12 +58,12 @@ static int check(Converge *converge, Folder *folder) {
 }
 
 static int measure(Converge *converge) {
-  if (converge->scene_studies)
-    converge_plan_scene(converge);
+  int code = converge->scene_studies ? converge_plan_scene(converge) : CLI_DONE;
+  if (code != CLI_DONE)
+    return code;
   if (converge->refine_study)
     converge_plan_refine(converge);
   cli_progress("measuring");
-  int code = CLI_DONE;
   if (converge->scene_studies)
     code = converge_run_scene(converge);
   if (code == CLI_DONE && converge->refine_study)

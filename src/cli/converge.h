@@ -22,8 +22,9 @@ typedef struct ConvergeRow {
   double tolerance; /* 0: none */
   double scale;     /* of the extinction */
   int level;        /* refinement: cells along an edge of the cube; 0: not of a mesh of that kind */
+  bool packets;     /* in STUDY_TIME, in which the other rows are held to the scalar kernel, to be fair */
 
-  const char *precision;
+  const char *precision, *isa; /* of the kernel that ran */
   int64_t cells, segments;
   int repeats, timed; /* renderings planned, and done so far */
   double *times;      /* [repeats], in order */
@@ -43,12 +44,11 @@ typedef struct Converge {
   int count, capacity;
 
   Brute brute;
-  double check_max;     /* of the exact picture against the brute-force reference, over its rays */
+  double check_max;     /* of the exact pictures against the brute-force reference, over its rays */
   double check_stiff;   /* the same with scaled extinction, the largest, … */
   double check_scale;   /* … and where */
   double analytic_step; /* last change of the analytic reference when its steps were halved */
-  const char *isa;
-  int64_t lost; /* rays, over all renderings */
+  int64_t lost;         /* rays, over all renderings */
 
   double work, done, step; /* for the progress bar: all, before the current step, of the current step */
 } Converge;
@@ -68,8 +68,9 @@ enum {
 /* Appends a row to the plan. */
 ConvergeRow *converge_plan(Converge *converge, ConvergeRow row);
 
-/* Plan the renderings of a study; the sum of their weights goes to converge->work. */
-void converge_plan_scene(Converge *converge);
+/* Plan the renderings of a study; the sum of their weights goes to converge->work. The first returns an exit code: it
+ * has to find out which kernel the scene runs in. */
+int converge_plan_scene(Converge *converge);
 void converge_plan_refine(Converge *converge);
 
 /* Perform what was planned; exit codes. */
@@ -88,6 +89,9 @@ void converge_compare(ConvergeRow *row, const double *picture, const double *tru
 
 /* "midpoint", "tolerance", …: what a row's curve is called. */
 const char *converge_name(const ConvergeRow *row);
+
+/* The exact row by packets of STUDY_TIME; NULL: the scene runs in the scalar kernel alone. */
+const ConvergeRow *converge_packets(const Converge *converge);
 
 /* The least-squares slope of log max_error (or rms_error) over log n of a curve of STUDY_TIME, or over log mesh size of
  * a curve of the other two; NaN where fewer than two points are clear of rounding. */

@@ -49,7 +49,7 @@ TetcastStatus converge_render(Converge *converge, const TetcastScene *scene, con
   desc.integrator = row->integrator;
   if (row->n > 0)
     desc.integrator_n = row->n;
-  desc.isa = (TetcastIsa)converge->options.isa;
+  desc.isa = row->study == STUDY_TIME && !row->packets ? TETCAST_ISA_SCALAR : (TetcastIsa)converge->options.isa;
   desc.tolerance = row->tolerance;
   desc.progress = converge_progress(converge, weight);
   TetcastRenderStats stats;
@@ -60,8 +60,8 @@ TetcastStatus converge_render(Converge *converge, const TetcastScene *scene, con
   add_time(row, cli_seconds() - start);
   row->segments = stats.segments;
   row->precision = stats.precision;
+  row->isa = stats.isa;
   row->bound = row->integrator == TETCAST_INTEGRATOR_EXACT ? stats.error : (double)NAN;
-  converge->isa = stats.isa;
   converge->lost += stats.lost;
   return TETCAST_OK;
 }
@@ -85,6 +85,13 @@ void converge_compare(ConvergeRow *row, const double *picture, const double *tru
 const char *converge_name(const ConvergeRow *row) {
   static const char *const names[] = {"exact", "midpoint", "trapezoid", "gauss", "table"};
   return row->tolerance > 0 ? "tolerance" : names[row->integrator];
+}
+
+const ConvergeRow *converge_packets(const Converge *converge) {
+  for (int i = 0; i < converge->count; i++)
+    if (converge->rows[i].packets)
+      return &converge->rows[i];
+  return NULL;
 }
 
 double converge_slope(const Converge *converge, ConvergeStudy study, TetcastIntegrator integrator, bool rms) {

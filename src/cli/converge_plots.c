@@ -26,28 +26,36 @@ typedef struct Curve {
   bool tolerance;
   const char *color;
   int point;
+  bool packets;
 } Curve;
 
 static const Curve scene_curves[] = {
-    {"exact", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, false, "#000000", 15},
-    {"tolerance", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, true, "#E69F00", 11},
-    {"midpoint", STUDY_TIME, TETCAST_INTEGRATOR_MIDPOINT, false, "#0072B2", 7},
-    {"trapezoid", STUDY_TIME, TETCAST_INTEGRATOR_TRAPEZOID, false, "#D55E00", 5},
-    {"gauss", STUDY_TIME, TETCAST_INTEGRATOR_GAUSS, false, "#009E73", 9},
-    {"table", STUDY_TIME, TETCAST_INTEGRATOR_TABLE, false, "#CC79A7", 13},
+    {"exact", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, false, "#000000", 15, false},
+    {"tolerance", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, true, "#E69F00", 11, false},
+    {"midpoint", STUDY_TIME, TETCAST_INTEGRATOR_MIDPOINT, false, "#0072B2", 7, false},
+    {"trapezoid", STUDY_TIME, TETCAST_INTEGRATOR_TRAPEZOID, false, "#D55E00", 5, false},
+    {"gauss", STUDY_TIME, TETCAST_INTEGRATOR_GAUSS, false, "#009E73", 9, false},
+    {"table", STUDY_TIME, TETCAST_INTEGRATOR_TABLE, false, "#CC79A7", 13, false},
 };
+/* In the plot of time alone: the same colours, open points. */
+static const Curve packet_curves[] = {
+    {"exact-packets", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, false, "#000000", 14, true},
+    {"tolerance-packets", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, true, "#E69F00", 10, true},
+};
+enum { PACKET_CURVES = sizeof packet_curves / sizeof *packet_curves };
 enum { SCENE_CURVES = sizeof scene_curves / sizeof *scene_curves };
 
 static const Curve refine_curves[] = {
-    {"exact", STUDY_REFINE, TETCAST_INTEGRATOR_EXACT, false, "#000000", 15},
-    {"midpoint-both", STUDY_REFINE, TETCAST_INTEGRATOR_MIDPOINT, false, "#E69F00", 6},
-    {"midpoint-integration", STUDY_INTEGRATION, TETCAST_INTEGRATOR_MIDPOINT, false, "#0072B2", 7},
-    {"gauss-integration", STUDY_INTEGRATION, TETCAST_INTEGRATOR_GAUSS, false, "#009E73", 9},
+    {"exact", STUDY_REFINE, TETCAST_INTEGRATOR_EXACT, false, "#000000", 15, false},
+    {"midpoint-both", STUDY_REFINE, TETCAST_INTEGRATOR_MIDPOINT, false, "#E69F00", 6, false},
+    {"midpoint-integration", STUDY_INTEGRATION, TETCAST_INTEGRATOR_MIDPOINT, false, "#0072B2", 7, false},
+    {"gauss-integration", STUDY_INTEGRATION, TETCAST_INTEGRATOR_GAUSS, false, "#009E73", 9, false},
 };
 enum { REFINE_CURVES = sizeof refine_curves / sizeof *refine_curves };
 
 static bool belongs(const ConvergeRow *row, const Curve *curve, ConvergeStudy study) {
-  return row->study == study && row->integrator == curve->integrator && (row->tolerance > 0) == curve->tolerance;
+  return row->study == study && row->integrator == curve->integrator && (row->tolerance > 0) == curve->tolerance &&
+         row->packets == curve->packets;
 }
 
 static const ConvergeRow *first_row(const Converge *converge, const Curve *curve, ConvergeStudy study) {
@@ -81,6 +89,9 @@ static void put_data(FILE *file, const Converge *converge, Plot plot) {
   else
     for (int i = 0; i < SCENE_CURVES; i++)
       put_curve(file, converge, &scene_curves[i], plot == PLOT_STIFFNESS ? STUDY_STIFFNESS : STUDY_TIME);
+  if (plot == PLOT_TIME && converge_packets(converge))
+    for (int i = 0; i < PACKET_CURVES; i++)
+      put_curve(file, converge, &packet_curves[i], STUDY_TIME);
 }
 
 /* ── scripts ── */
@@ -97,38 +108,55 @@ static const char *slope_text(const Converge *converge, ConvergeStudy study, Tet
 }
 
 static void put_style(FILE *file, const Curve *curve, const char *title) {
-  const char *size = curve->point == 6    ? "1.8 dashtype 2" /* drawn around the points of another curve */
-                     : curve->point == 15 ? "1.3"
-                                          : "0.9";
-  fprintf(file, " with linespoints linecolor rgb '%s' pointtype %d linewidth 2 pointsize %s title '%s'", curve->color,
-          curve->point, size, title);
+  const char *size = "0.9";
+  if (curve->packets)
+    size = "1.4"; /* so that open points are seen to be open */
+  else if (curve->point == 6)
+    size = "1.8 dashtype 2"; /* drawn around the points of another curve */
+  else if (curve->point == 15)
+    size = "1.3";
+  fprintf(file, " with linespoints linecolor rgb '%s' pointtype %d linewidth %s pointsize %s title '%s'", curve->color,
+          curve->point, curve->packets ? "1.2" : "2", size, title);
+}
+
+/* A line of the legend that stands for no curve. */
+static void put_heading(FILE *file, const char *separator, const char *kernel) {
+  fprintf(file, "%s \\\n  'time.dat' index 'exact' using 2:(NaN) with lines linecolor rgb 'white' title '%s kernel:'",
+          separator, kernel);
+}
+
+static void put_time_curve(FILE *file, const Converge *converge, const Curve *curve) {
+  char title[96];
+  int low = 0, high = 0;
+  for (int j = 0; j < converge->count; j++)
+    if (belongs(&converge->rows[j], curve, STUDY_TIME)) {
+      high = converge->rows[j].n;
+      low = low ? low : high;
+    }
+  if (curve->tolerance)
+    snprintf(title, sizeof title, "tolerance, 10^{−1} … 10^{−9}");
+  else if (low == 0)
+    snprintf(title, sizeof title, "exact");
+  else
+    snprintf(title, sizeof title, "%s:n, n = %d … %d", curve->name, low, high);
+  fprintf(file, ", \\\n  'time.dat' index '%s' using 2:(shown($3))", curve->name);
+  put_style(file, curve, title);
+  if (curve->tolerance && !curve->packets) /* the bounds are the same by packets */
+    fprintf(file,
+            ", \\\n  '' index '%s' using 2:(shown($5)) with linespoints linecolor rgb '%s' pointtype 2 dashtype 2 "
+            "linewidth 1.5 pointsize 0.7 title 'tolerance: guaranteed bound'",
+            curve->name, curve->color);
 }
 
 static void put_time_curves(FILE *file, const Converge *converge) {
-  const char *separator = "plot";
-  for (int i = 0; i < SCENE_CURVES; i++) {
-    const Curve *curve = &scene_curves[i];
-    char title[96];
-    int low = 0, high = 0;
-    for (int j = 0; j < converge->count; j++)
-      if (belongs(&converge->rows[j], curve, STUDY_TIME)) {
-        high = converge->rows[j].n;
-        low = low ? low : high;
-      }
-    if (curve->tolerance)
-      snprintf(title, sizeof title, "tolerance, 10^{−1} … 10^{−9}");
-    else if (low == 0)
-      snprintf(title, sizeof title, "exact");
-    else
-      snprintf(title, sizeof title, "%s:n, n = %d … %d", curve->name, low, high);
-    fprintf(file, "%s \\\n  'time.dat' index '%s' using 2:(shown($3))", separator, curve->name);
-    put_style(file, curve, title);
-    separator = ",";
-    if (curve->tolerance)
-      fprintf(file,
-              ", \\\n  '' index '%s' using 2:(shown($5)) with linespoints linecolor rgb '%s' pointtype 10 dashtype 2 "
-              "linewidth 1.5 pointsize 0.9 title 'tolerance: guaranteed bound'",
-              curve->name, curve->color);
+  const ConvergeRow *packets = converge_packets(converge);
+  put_heading(file, "plot", converge->rows[0].isa);
+  for (int i = 0; i < SCENE_CURVES; i++)
+    put_time_curve(file, converge, &scene_curves[i]);
+  if (packets) {
+    put_heading(file, ",", packets->isa);
+    for (int i = 0; i < PACKET_CURVES; i++)
+      put_time_curve(file, converge, &packet_curves[i]);
   }
   fputs("\n", file);
 }
@@ -220,7 +248,8 @@ static void put_script(FILE *file, const Converge *converge, Plot plot) {
                                                              put_refine_curves};
   static const char *const labels[] = {
       "set xlabel 'time to render, seconds'\n"
-      "set xtics add ('0.002' 0.002, '0.005' 0.005, '0.02' 0.02, '0.05' 0.05, '0.2' 0.2, '0.5' 0.5, 2, 5, 20, 50)\n",
+      "set xtics add ('0.0002' 0.0002, '0.0005' 0.0005, '0.002' 0.002, '0.005' 0.005, '0.02' 0.02, '0.05' 0.05, "
+      "'0.2' 0.2, '0.5' 0.5, 2, 5, 20, 50)\n",
       "set xlabel 'n: samples per segment (table: entries a side)'\n"
       "set xtics (1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024)\n"
       "set xrange [0.9:1200]\n",

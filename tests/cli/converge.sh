@@ -11,7 +11,7 @@ vtu cube.vtu "$five_tetrahedra" 10
 echo '{"color": [[-1,1,0.3,0.1],[7,0.2,0.5,1]], "extinction": [[-1,0.5],[7,9]]}' >smooth.json
 echo '{"color": [[0,1,0,0],[2,0,0.3,1],[2,1,1,1],[6,0,0,1]], "extinction": [[0,3],[2,0],[2,5],[6,1]]}' >knots.json
 
-header=study,integrator,parameter,precision,tolerance,extinction_scale,mesh_size,cells,segments,repeats,seconds,max_error,rms_error,bound,peak
+header=study,integrator,parameter,precision,isa,tolerance,extinction_scale,mesh_size,cells,segments,repeats,seconds,max_error,rms_error,bound,peak
 
 # holds REPORT CONDITION: every line of report.csv that CONDITION's first part, before =>, selects fulfils the second;
 # there are such lines.
@@ -19,8 +19,8 @@ holds() {
   checks=$((checks + 1))
   local message
   message=$(awk -F, -v OFS=, "NR > 1 {
-      study = \$1; integrator = \$2; n = \$3; tolerance = \$5; scale = \$6; h = \$7; repeats = \$10; seconds = \$11
-      max = \$12; rms = \$13; bound = \$14; peak = \$15
+      study = \$1; integrator = \$2; n = \$3; isa = \$5; tolerance = \$6; scale = \$7; h = \$8; repeats = \$11
+      seconds = \$12; max = \$13; rms = \$14; bound = \$15; peak = \$16
       if (${2%%=>*}) { count++; if (!(${2#*=>})) { print; bad = 1 } }
     } END { if (!count) print \"no line\" }" "$1/report.csv")
   [ -z "$message" ] || fail "$2 in $1: $message"
@@ -31,7 +31,7 @@ slope() {
   checks=$((checks + 1))
   local slope
   slope=$(awk -F, "NR > 1 {
-      study = \$1; integrator = \$2; n = \$3; h = \$7; max = \$12
+      study = \$1; integrator = \$2; n = \$3; h = \$8; max = \$13
       if ($2) { x = log($3); y = log(max); c++; sx += x; sy += y; xx += x * x; xy += x * y }
     } END { print (c * xy - sx * sy) / (c * xx - sx * sx) }" "$1/report.csv")
   awk "BEGIN { exit !($slope >= $4 && $slope <= $5) }" || fail "slope $slope of $2 in $1, not from $4 to $5"
@@ -50,7 +50,7 @@ whole() {
   checks=$((checks + 1))
   [ "$(ls -A "$report")" = "$(echo "$expected" | LC_ALL=C sort)" ] || fail "files of $report: $(ls -A "$report")"
   [ "$(head -1 "$report/report.csv")" = $header ] || fail "header of $report: $(head -1 "$report/report.csv")"
-  [ -z "$(awk -F, 'NF != 15' "$report/report.csv")" ] || fail "lines of $report: $(awk -F, 'NF != 15' "$report/report.csv")"
+  [ -z "$(awk -F, 'NF != 16' "$report/report.csv")" ] || fail "lines of $report: $(awk -F, 'NF != 16' "$report/report.csv")"
   for name; do
     [ -n "$plots" ] || [ "$(head -c 4 "$report/$name.png" | tail -c 3)" = PNG ] || fail "$report/$name.png is no PNG"
     [ -n "$plots" ] || tail -2 "$report/$name.svg" | grep -q '</svg>' || fail "$report/$name.svg is not whole"
@@ -80,6 +80,43 @@ holds smooth 'study == "stiffness" && scale < 2e-6 => peak > 0 && peak < 1e-4'
 holds smooth 'study == "stiffness" && scale == 1 && integrator == "midpoint" => n == 8 && max > 1e-6'
 for text in 'bit mantissas' 'cube.vtu, array s' '5 tetrahedra' '40 × 30' 'threads'; do
   grep -q "$text" smooth/report.md || fail "'$text' is not in the report"
+done
+
+# kernels REPORT ISA…: the time study has the exact integrator and the ladder of tolerances once by each of these, and
+# the others by the first alone.
+kernels() {
+  local report=$1 expected got isa
+  shift
+  expected=$(for isa; do
+    echo "exact $isa 10"
+    [ "$isa" != "$1" ] || printf '%s\n' "gauss $isa 8" "midpoint $isa 7" "table $isa 9" "trapezoid $isa 7"
+  done | sort)
+  got=$(awk -F, '$1 == "time" { count[$2 " " $5]++ } END { for (name in count) print name, count[name] }' \
+    "$report/report.csv" | sort)
+  checks=$((checks + 1))
+  [ "$got" = "$expected" ] || fail "kernels of $report: $got; not: $expected"
+}
+
+# Integrators are compared in the scalar kernel; what packets add comes on top, where they are allowed and possible.
+kernels smooth scalar "$(awk -F, '$1 == "stiffness" && $2 == "exact" { print $5; exit }' smooth/report.csv)"
+holds smooth 'isa != "scalar" => integrator == "exact"'
+holds smooth 'isa != "scalar" && study == "time" && tolerance == 0 => max > 0 && max <= 1e-13 && bound > 0'
+grep -q '^Integrators are compared in the same kernel, \*scalar\*' smooth/report.md || fail 'the kernels are not explained'
+grep -q '^| exact | scalar |.* 1.00 |' smooth/report.md || fail 'the exact integrator is not the measure'
+cost=$(awk -F ' [|] ' '$1 == "| 1e-2" { print $2 }' smooth/report.md)
+seconds=$(awk -F ' [|] ' '$1 == "| exact" && $2 == "scalar" { print $3 }' smooth/report.md)
+[ -n "$cost" ] && [ "$cost" = "$seconds" ] || fail "exact costs '$cost', not what it took in the scalar kernel, '$seconds'"
+grep -q "index 'exact-packets'" smooth/time.gp || fail 'packets are not in the plot'
+! grep -q packets smooth/stiffness.gp smooth/samples.gp || fail 'packets are in the other plots'
+accept converge cube.vtu --transfer smooth.json -o capped --size 12x9 --repeat 1 --isa baseline $plots
+kernels capped scalar baseline
+for options in '--isa scalar' '--traversal faces'; do
+  # shellcheck disable=SC2086  # a list of words
+  accept converge cube.vtu --transfer smooth.json -o capped --size 12x9 --repeat 1 $options $plots
+  kernels capped scalar
+  holds capped 'isa != "" => isa == "scalar"'
+  grep -q '^All integrators ran in the same kernel, \*scalar\*' capped/report.md || fail "not explained: $options"
+  ! grep -q packets capped/time.gp || fail "packets are in the plot: $options"
 done
 
 # Refinement: piecewise linear fields are off by h², and integrators by their orders.
