@@ -247,9 +247,7 @@ static void put_script(FILE *file, const Converge *converge, Plot plot) {
   static void (*const curves[])(FILE *, const Converge *) = {put_time_curves, put_samples_curves, put_stiffness_curves,
                                                              put_refine_curves};
   static const char *const labels[] = {
-      "set xlabel 'time to render, seconds'\n"
-      "set xtics add ('0.0002' 0.0002, '0.0005' 0.0005, '0.002' 0.002, '0.005' 0.005, '0.02' 0.02, '0.05' 0.05, "
-      "'0.2' 0.2, '0.5' 0.5, 2, 5, 20, 50)\n",
+      "set xlabel 'time to render, seconds'\n",
       "set xlabel 'n: samples per segment (table: entries a side)'\n"
       "set xtics (1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024)\n"
       "set xrange [0.9:1200]\n",

@@ -51,14 +51,18 @@ def error_over_time(results):
     scene = next((name for name in ('cube-1.6m', 'cube-200k') if name in results.scenes()), results.scenes()[0])
     script, times = '', []
     for case in ('soft', 'sharp'):
-        curve = []
+        curve, others, fastest = [], [], None # the fastest instruction set comes first
         for row in results.all(task='frame', scene=scene, case=case, threads=1, pixels=results.pixels):
             if row['renderer'].startswith('tetcast'):
                 exact = row['renderer'] == 'tetcast exact'
-                label = row['renderer'].removeprefix('' if exact else 'tetcast ')
-                curve.append((row['cpu_s'], row['error_bound'] if exact else max(row['largest_error'], 1e-15), label))
+                fastest = fastest or row['isa']
+                point = row['cpu_s'], row['error_bound'] if exact else max(row['largest_error'], 1e-15)
+                if row['isa'] == fastest:
+                    curve.append((*point, row['renderer'].removeprefix('' if exact else 'tetcast ')))
+                else:
+                    others.append((*point, row['isa']))
             times.append(row['cpu_s'])
-        script += block(f'tetcast_{case}', merge(curve))
+        script += block(f'tetcast_{case}', merge(curve)) + block(f'others_{case}', others)
         rows = sorted(((results.frame(scene, case, name), name, style) for name, style in VTK), key=lambda row: -row[0]['cpu_s'])
         points = merge([(row['cpu_s'], max(row['largest_error'], 1e-15), name) for row, name, _ in rows])
         for (_, _, style), point in zip(rows, points):
@@ -71,6 +75,9 @@ def error_over_time(results):
         script += (f"set title 'transfer function {case}' offset 0,-0.5\n"
                    f'plot $tetcast_{case} using 1:2 with linespoints ls 1, '
                    f"$tetcast_{case} using 1:2:3 with labels right offset -0.9,0 font ',10' textcolor rgb '#0060ad'")
+        if f'$others_{case} << E\n\nE' not in script:
+            script += (f', $others_{case} using 1:2 with points ls 5, '
+                       f"$others_{case} using 1:2:3 with labels left rotate by -40 offset 0,-0.7 font ',9' textcolor ls 5")
         for name, style in VTK:
             script += (f', $vtk{style}_{case} using 1:2 with points ls {style} ps 1.5, $vtk{style}_{case} '
                        f"using 1:2:3 with labels left offset 0.9,0 font ',10' textcolor ls {style}")
