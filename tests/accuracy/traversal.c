@@ -70,6 +70,29 @@ static Soup soup_cavity(void) {
   return soup;
 }
 
+/* A mesh that TetGen made, of cells of all shapes around a cavity. */
+static Soup soup_tetgen(void) {
+  Soup soup = {.name = "TetGen's, with a cavity", .size = {1, 1, 1}, .disjoint = true};
+  Cube *cube = &soup.cube;
+  FILE *file = fopen(TETCAST_CAVITY, "r");
+  assert_non_null(file);
+  while (fgetc(file) != '\n') {} /* what it is */
+  long vertices, cells, index;
+  assert_int_equal(fscanf(file, "%ld %ld", &vertices, &cells), 2);
+  cube->vertex_count = vertices;
+  cube->cell_count = cells;
+  cube->vertices = malloc((size_t)vertices * 3 * sizeof *cube->vertices);
+  cube->values = calloc((size_t)vertices, sizeof *cube->values);
+  cube->cells = malloc((size_t)cells * 4 * sizeof *cube->cells);
+  for (long i = 0; i < 3 * vertices; ++i) assert_int_equal(fscanf(file, "%lf", &cube->vertices[i]), 1);
+  for (long i = 0; i < 4 * cells; ++i) {
+    assert_int_equal(fscanf(file, "%ld", &index), 1);
+    cube->cells[i] = index;
+  }
+  fclose(file);
+  return soup;
+}
+
 /* A second cube moved by (x, y, z): touching at a corner, an edge or a side, with vertices of its own. */
 static Soup soup_two(const char *name, double x, double y, double z) {
   Soup soup = soup_cube(name, 2, 0.3), other = soup_cube(name, 2, 0.3);
@@ -356,6 +379,7 @@ static void regular_cube(void **state) { (void)state; run(soup_cube("Kuhn-cut cu
 static void jittered_cube(void **state) { (void)state; run(soup_cube("jittered cube", 4, 0.5), 0.3); }
 static void single_cell(void **state) { (void)state; run(soup_one("single cell", 1, 1, 1), 0.1); }
 static void cavity(void **state) { (void)state; run(soup_cavity(), 0.1); }
+static void tetgen_cavity(void **state) { (void)state; run(soup_tetgen(), 0.1); }
 static void flat_cells(void **state) { (void)state; run(soup_flat(3), 0.1); }
 static void needle(void **state) { (void)state; run(soup_one("needle", 1e-8, 1e-8, 1), 0.05); }
 
@@ -403,7 +427,7 @@ static void random_cells_terminate(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(regular_cube), cmocka_unit_test(jittered_cube), cmocka_unit_test(single_cell),
-    cmocka_unit_test(cavity),       cmocka_unit_test(flat_cells),    cmocka_unit_test(needle),
+    cmocka_unit_test(cavity),       cmocka_unit_test(tetgen_cavity), cmocka_unit_test(flat_cells),    cmocka_unit_test(needle),
     cmocka_unit_test(slivers),      cmocka_unit_test(touching),      cmocka_unit_test(random_cells_terminate),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
