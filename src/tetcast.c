@@ -367,5 +367,6 @@ TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamer
   if (!scene->volume->has_field) return ARGUMENT(context, "the volume has no field yet");
   if (!scene->transfer) return ARGUMENT(context, "the scene has no transfer function yet");
   const TetcastStatus status = check_camera(context, camera);
+  /* The first frame after a change prepares the scene, behind a lock: nothing that the caller could see. */
   return status ? status : tc_scene_render((TetcastScene *)scene, camera, desc, frame, stats);
 }

@@ -71,10 +71,9 @@ typedef struct TetcastRenderStats {
 } TetcastRenderStats;
 
 /* Renders into every pixel of `frame`, all its channels. `desc` and `stats` may be NULL. The volume must have a field and the scene a transfer
- * function (TETCAST_ERROR_ARGUMENT). With one instruction set the result has the same bits for any number of
- * threads. After an error or a
- * cancelled call the frame's pixels are unspecified and the scene is as before. Calls with different frames may run at
- * the same time, also on one scene. */
+ * function (TETCAST_ERROR_ARGUMENT). With one instruction set the result has the same bits for any
+ * number of threads. After an error or a cancelled call the frame's pixels are unspecified and the scene is as before. Calls with
+ * different frames may run at the same time, also on one scene. */
 TETCAST_API TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
                                                TetcastFrame *frame, TetcastRenderStats *stats);
 

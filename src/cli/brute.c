@@ -105,14 +105,7 @@ static int along(const void *a, const void *b) {
 }
 
 static void append(BruteRay *ray, const BruteSpan *span) {
-  if (ray->count == ray->capacity) {
-    ray->capacity = ray->capacity ? 2 * ray->capacity : 256;
-    BruteSpan *more = cli_allocate(sizeof *more * (size_t)ray->capacity);
-    if (ray->count)
-      memcpy(more, ray->spans, sizeof *more * (size_t)ray->count);
-    free(ray->spans);
-    ray->spans = more;
-  }
+  ray->spans = cli_grow(ray->spans, ray->count, &ray->capacity, sizeof *ray->spans);
   ray->spans[ray->count++] = *span;
 }
 

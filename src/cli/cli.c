@@ -168,6 +168,17 @@ void *cli_allocate(size_t size) {
   return memory;
 }
 
+void *cli_grow(void *data, int count, int *capacity, size_t size) {
+  if (count < *capacity)
+    return data;
+  *capacity = *capacity ? 2 * *capacity : 128;
+  void *more = cli_allocate(size * (size_t)*capacity);
+  if (count)
+    memcpy(more, data, size * (size_t)count);
+  free(data);
+  return more;
+}
+
 char *cli_duplicate(const char *text) {
   const size_t size = strlen(text) + 1;
   return memcpy(cli_allocate(size), text, size);

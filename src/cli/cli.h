@@ -50,6 +50,9 @@ int cli_parse_numbers(const char *text, char separator, int most, double *values
 /* malloc(), strdup() and asprintf() that end the process with a message when there is no memory. */
 void *cli_allocate(size_t size);
 char *cli_duplicate(const char *text);
+
+/* An array of elements of this size with room for one more than its `count`: `data` itself, or what takes its place. */
+void *cli_grow(void *data, int count, int *capacity, size_t size);
 char *cli_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* Seconds of a clock that only goes forward. */

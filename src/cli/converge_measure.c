@@ -9,14 +9,7 @@
 #include "progress.h"
 
 ConvergeRow *converge_plan(Converge *converge, ConvergeRow row) {
-  if (converge->count == converge->capacity) {
-    converge->capacity = converge->capacity ? 2 * converge->capacity : 128;
-    ConvergeRow *more = cli_allocate(sizeof *more * (size_t)converge->capacity);
-    if (converge->count)
-      memcpy(more, converge->rows, sizeof *more * (size_t)converge->count);
-    free(converge->rows);
-    converge->rows = more;
-  }
+  converge->rows = cli_grow(converge->rows, converge->count, &converge->capacity, sizeof *converge->rows);
   converge->rows[converge->count] = row;
   return &converge->rows[converge->count++];
 }

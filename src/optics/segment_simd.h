@@ -45,13 +45,18 @@ static const double tc_segments_a[5][9] = {TC_A_ROW(0, 1.), TC_A_ROW(1, 2.), TC_
 static const double tc_segments_b[5][9] = {TC_A_ROW(0, 2.), TC_A_ROW(1, 12.), TC_A_ROW(2, 240.), TC_A_ROW(3, 10080.),
                                            TC_A_ROW(4, 725760.)};
 
+/* g = e^−h − 1 by its series, for h ≤ 1/8 by ten terms. */
+TC_INLINE TcVec tc_segments_g(TcVec h, int count) {
+  static const double terms[] = {-1,         1. / 2,      -1. / 6,      1. / 24,     -1. / 120,
+                                 1. / 720,   -1. / 5040,  1. / 40320,   -1. / 362880, 1. / 3628800};
+  return h * tc_polynomial(h, terms, count);
+}
+
 TC_INLINE TcSegments tc_segments_series(TcVec t, TcVec d, const int thinner) {
-  static const double g_terms[] = {-1,           1. / 2,      -1. / 6,      1. / 24,      -1. / 120, 1. / 720,
-                                   -1. / 5040,   1. / 40320,  -1. / 362880, 1. / 3628800};
   static const double e_terms[] = {1, 1, 1. / 2, 1. / 6, 1. / 24, 1. / 120, 1. / 720, 1. / 5040, 1. / 40320};
   const double(*a)[9] = tc_segments_a, (*b)[9] = tc_segments_b;
   const TcVec h = 0.5 * t, x = h * h, y = -0.25 * d;
-  const TcVec g = h * tc_polynomial(h, g_terms, thinner ? 8 : 10);
+  const TcVec g = tc_segments_g(h, thinner ? 8 : 10);
   const TcVec e = tc_polynomial(-y, e_terms, thinner ? 7 : 9);
   TcVec sum_a, sum_b;
   if (thinner) {
@@ -121,8 +126,7 @@ TC_INLINE TcSegments tc_segments(TcMask mask, TcVec a, TcVec a1, TcVec t, double
 
 /* a = a1 = t: w0 holds the opacity, w1 nothing. */
 TC_INLINE TcSegments tc_segments_constant(TcMask mask, TcVec t) {
-  static const double g_terms[] = {-1, 1. / 2, -1. / 6, 1. / 24, -1. / 120, 1. / 720, -1. / 5040, 1. / 40320, -1. / 362880, 1. / 3628800};
-  const TcVec h = 0.5 * t, g = h * tc_polynomial(h, g_terms, 10), alpha = -g * (2 + g);
+  const TcVec g = tc_segments_g(0.5 * t, 10), alpha = -g * (2 + g);
   TcSegments result = {alpha, tc_set(0), 1 - alpha};
   const TcMask deep = tc_and(mask, tc_gt(t, tc_set(0x1p-2)));
   if (tc_any(deep)) {

@@ -15,11 +15,6 @@ typedef struct Build {
   TcClusters *clusters;
 } Build;
 
-static int cell_count(const TcAdjacency *adjacency, int64_t c) {
-  const int64_t left = adjacency->cell_count - (c << TC_CLUSTER_BITS);
-  return left < TC_CLUSTER ? (int)left : TC_CLUSTER;
-}
-
 /* The cells of cluster c that faces within it connect with `first`, as bits. */
 static uint64_t connected(const TcAdjacency *adjacency, int64_t c, int first) {
   uint64_t found = UINT64_C(1) << first, open = found;
@@ -39,7 +34,7 @@ static uint64_t connected(const TcAdjacency *adjacency, int64_t c, int first) {
 
 /* The cells of cluster c that become seeds, as bits. */
 static uint64_t seeds_of(const TcAdjacency *adjacency, int64_t c) {
-  const int count = cell_count(adjacency, c);
+  const int count = tc_cluster_size(adjacency, c);
   uint64_t left = count < 64 ? (UINT64_C(1) << count) - 1 : UINT64_MAX, seeds = 0;
   while (left) {
     const int first = __builtin_ctzll(left);
@@ -146,7 +141,7 @@ int tc_cluster_cells(const TcClusters *clusters, const TcAdjacency *adjacency, i
       found |= bit;
     }
   }
-  return cell_count(adjacency, c);
+  return tc_cluster_size(adjacency, c);
 }
 
 /* ── values ── */
@@ -168,7 +163,7 @@ static bool take_ranges(void *data, int64_t begin, int64_t end, int worker) {
   for (int64_t c = begin; c < end; ++c) {
     double range[2] = {INFINITY, -INFINITY};
     if (volume->association == TETCAST_CELL) {
-      for (int i = 0; i < cell_count(&volume->adjacency, c); ++i) extend(range, volume->cell_values[(c << TC_CLUSTER_BITS) + i]);
+      for (int i = 0; i < tc_cluster_size(&volume->adjacency, c); ++i) extend(range, volume->cell_values[(c << TC_CLUSTER_BITS) + i]);
     } else {
       uint32_t vertices[TC_CLUSTER][4];
       const int count = tc_cluster_cells(ranges->clusters, &volume->adjacency, c, vertices);

@@ -21,6 +21,12 @@ typedef struct TcClusters {
   float (*range)[2];    /* [count]: all values of the cluster lie in it, NaN apart; (∞, −∞) if there are none but NaN */
 } TcClusters;
 
+/* How many cells cluster c has: the last may have fewer. */
+static inline int tc_cluster_size(const TcAdjacency *adjacency, int64_t c) {
+  const int64_t left = adjacency->cell_count - (c << TC_CLUSTER_BITS);
+  return left < TC_CLUSTER ? (int)left : TC_CLUSTER;
+}
+
 /* vertices[i]: of cell i, ascending. */
 TetcastStatus tc_clusters_build(TetcastContext *context, const TcAdjacency *adjacency, const uint32_t (*vertices)[4],
                                 TcClusters *clusters);

@@ -144,84 +144,76 @@ size_t tc_embree_bytes(const TcEmbree *embree) {
   return bytes > 0 ? (size_t)bytes : 0;
 }
 
-void tc_embree_query(const TcEmbree *embree, const double from_center[3], const double direction[3], TcCandidateFunction *candidate,
-                     void *user) {
-  /* Start beyond the sphere: where the line is nearest to the centre, then two radii back. */
+/* Where a ray starts: where its line is nearest to the centre, then two radii back, beyond the sphere. */
+static void start_of(const TcEmbree *embree, const double from_center[3], const double direction[3], float start[3]) {
   double p[3], along = 0;
   for (int k = 0; k < 3; ++k) {
     p[k] = from_center[k] * embree->inverse_radius;
     along += p[k] * direction[k];
   }
-  struct RTCRayHit ray;
-  ray.ray.org_x = (float)(p[0] - (along + 2) * direction[0]);
-  ray.ray.org_y = (float)(p[1] - (along + 2) * direction[1]);
-  ray.ray.org_z = (float)(p[2] - (along + 2) * direction[2]);
-  ray.ray.dir_x = (float)direction[0];
-  ray.ray.dir_y = (float)direction[1];
-  ray.ray.dir_z = (float)direction[2];
-  ray.ray.tnear = 0;
-  ray.ray.tfar = 4;
-  ray.ray.time = 0;
-  ray.ray.mask = UINT32_MAX;
-  ray.ray.id = 0;
-  ray.ray.flags = 0;
-  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  ray.hit.primID = RTC_INVALID_GEOMETRY_ID;
-  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  Query query = {.candidate = candidate, .query = user};
-#if RTC_VERSION_MAJOR >= 4
-  rtcInitRayQueryContext(&query.context);
-  struct RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
-  arguments.context = &query.context;
-  rtcIntersect1(embree->scene, &ray, &arguments);
-#else
-  rtcInitIntersectContext(&query.context);
-  rtcIntersect1(embree->scene, &query.context, &ray);
-#endif
+  for (int k = 0; k < 3; ++k) start[k] = (float)(p[k] - (along + 2) * direction[k]);
 }
 
-#define FILL(r, i)                                                                                      \
-  do {                                                                                                  \
-    double p[3], d[3], along = 0;                                                                       \
-    for (int k = 0; k < 3; ++k) {                                                                       \
-      d[k] = direction[k * width + (i)];                                                                \
-      p[k] = from_center[k * width + (i)] * embree->inverse_radius;                                     \
-      along += p[k] * d[k];                                                                             \
-    }                                                                                                   \
-    (r).ray.org_x[i] = (float)(p[0] - (along + 2) * d[0]), (r).ray.dir_x[i] = (float)d[0];          \
-    (r).ray.org_y[i] = (float)(p[1] - (along + 2) * d[1]), (r).ray.dir_y[i] = (float)d[1];          \
-    (r).ray.org_z[i] = (float)(p[2] - (along + 2) * d[2]), (r).ray.dir_z[i] = (float)d[2];          \
-    (r).ray.tnear[i] = 0, (r).ray.tfar[i] = 4, (r).ray.time[i] = 0;                               \
-    (r).ray.mask[i] = UINT32_MAX, (r).ray.id[i] = (unsigned)(i), (r).ray.flags[i] = 0;            \
-    (r).hit.geomID[i] = (r).hit.primID[i] = (r).hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;       \
-    valid[i] = lanes >> (i) & 1 ? -1 : 0;                                                               \
+/* Sets up `query`, and calls an rtcIntersect function with what comes before and after the rays. */
+#if RTC_VERSION_MAJOR >= 4
+#define INTERSECT(query, is_coherent, call)                                                               \
+  do {                                                                                                 \
+    rtcInitRayQueryContext(&(query).context);                                                          \
+    struct RTCIntersectArguments arguments;                                                            \
+    rtcInitIntersectArguments(&arguments);                                                             \
+    arguments.flags = (is_coherent) ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;     \
+    arguments.context = &(query).context;                                                              \
+    call;                                                                                              \
+  } while (0)
+#define RAYS(query, rays) (rays), &arguments
+#else
+#define INTERSECT(query, is_coherent, call)                                                                                   \
+  do {                                                                                                                     \
+    rtcInitIntersectContext(&(query).context);                                                                             \
+    (query).context.flags = (is_coherent) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT; \
+    call;                                                                                                                  \
+  } while (0)
+#define RAYS(query, rays) &(query).context, (rays)
+#endif
+
+void tc_embree_query(const TcEmbree *embree, const double from_center[3], const double direction[3], TcCandidateFunction *candidate,
+                     void *user) {
+  float start[3];
+  start_of(embree, from_center, direction, start);
+  struct RTCRayHit ray = {
+    .ray = {.org_x = start[0], .org_y = start[1], .org_z = start[2], .dir_x = (float)direction[0], .dir_y = (float)direction[1],
+            .dir_z = (float)direction[2], .tfar = 4, .mask = UINT32_MAX},
+    .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .primID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}}};
+  Query query = {.candidate = candidate, .query = user};
+  INTERSECT(query, false, rtcIntersect1(embree->scene, RAYS(query, &ray)));
+}
+
+/* Ray i of a packet of either width. */
+#define FILL(rays, i)                                                                                                          \
+  do {                                                                                                                         \
+    const double p[3] = {from_center[i], from_center[width + (i)], from_center[2 * width + (i)]};                              \
+    const double d[3] = {direction[i], direction[width + (i)], direction[2 * width + (i)]};                                    \
+    float start[3];                                                                                                            \
+    start_of(embree, p, d, start);                                                                                             \
+    (rays).ray.org_x[i] = start[0], (rays).ray.org_y[i] = start[1], (rays).ray.org_z[i] = start[2];                            \
+    (rays).ray.dir_x[i] = (float)d[0], (rays).ray.dir_y[i] = (float)d[1], (rays).ray.dir_z[i] = (float)d[2];                   \
+    (rays).ray.tnear[i] = 0, (rays).ray.tfar[i] = 4, (rays).ray.time[i] = 0;                                                   \
+    (rays).ray.mask[i] = UINT32_MAX, (rays).ray.id[i] = (unsigned)(i), (rays).ray.flags[i] = 0;                                \
+    (rays).hit.geomID[i] = (rays).hit.primID[i] = (rays).hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;                           \
+    valid[i] = lanes >> (i) & 1 ? -1 : 0;                                                                                      \
   } while (0)
 
 void tc_embree_query_packet(const TcEmbree *embree, int width, unsigned lanes, const double *from_center, const double *direction,
                             TcPacketCandidateFunction *candidate, void *user) {
   Query query = {.packet_candidate = candidate, .query = user};
   _Alignas(64) int valid[8];
-#if RTC_VERSION_MAJOR >= 4
-  rtcInitRayQueryContext(&query.context);
-  struct RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  arguments.context = &query.context;
-#define INTERSECT(function, rays) function(valid, embree->scene, rays, &arguments)
-#else
-  rtcInitIntersectContext(&query.context);
-  query.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-#define INTERSECT(function, rays) function(valid, embree->scene, &query.context, rays)
-#endif
   if (width == 8) {
     struct RTCRayHit8 rays;
     for (int i = 0; i < 8; ++i) FILL(rays, i);
-    INTERSECT(rtcIntersect8, &rays);
+    INTERSECT(query, true, rtcIntersect8(valid, embree->scene, RAYS(query, &rays)));
   } else {
     struct RTCRayHit4 rays;
     for (int i = 0; i < 4; ++i) FILL(rays, i);
-    INTERSECT(rtcIntersect4, &rays);
+    INTERSECT(query, true, rtcIntersect4(valid, embree->scene, RAYS(query, &rays)));
   }
 }

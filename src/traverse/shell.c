@@ -27,8 +27,7 @@ static uint32_t cluster_faces(const Build *build, int64_t c, TcShellFace *faces)
   const TcAdjacency *adjacency = &build->volume->adjacency;
   uint32_t vertices[TC_CLUSTER][4], count = 0;
   const int64_t first = c << TC_CLUSTER_BITS;
-  const int64_t left = adjacency->cell_count - first;
-  const int cells = left < TC_CLUSTER ? (int)left : TC_CLUSTER;
+  const int cells = tc_cluster_size(adjacency, c);
   bool known = false;
   for (int i = 0; i < cells; ++i) {
     const TcCell *cell = &adjacency->cells[first + i];

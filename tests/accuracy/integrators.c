@@ -96,9 +96,7 @@ static void pictures_converge(void **state) {
   Cube cube = cube_create(4, 0.5);
   TetcastVolume *volume = cube_volume(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
   TetcastTransferFunction *transfer = transfer_of(fixture.context, 1);
-  TetcastScene *scene;
-  assert_int_equal(tetcast_scene_create(fixture.context, volume, &scene), TETCAST_OK);
-  assert_int_equal(tetcast_scene_set_transfer_function(scene, transfer), TETCAST_OK);
+  TetcastScene *scene = scene_of(fixture.context, volume, transfer);
   TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
   frame_desc.width = frame_desc.height = 24;
   TetcastFrame *frame;

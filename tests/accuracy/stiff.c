@@ -155,10 +155,8 @@ static void pixels_of(TetcastContext *context, const TetcastVolume *volume, cons
   frame_desc.width = frame_desc.height = 1;
   frame_desc.channels = TETCAST_CHANNEL_ERROR;
   TetcastFrame *frame = NULL;
-  TetcastScene *scene = NULL;
+  TetcastScene *scene = scene_of(context, volume, transfer);
   assert_int_equal(tetcast_frame_create(context, &frame_desc, &frame), TETCAST_OK);
-  assert_int_equal(tetcast_scene_create(context, volume, &scene), TETCAST_OK);
-  assert_int_equal(tetcast_scene_set_transfer_function(scene, transfer), TETCAST_OK);
   for (int i = 0; i < PIXELS; ++i) {
     TetcastRenderDesc desc = tetcast_render_desc_default();
     desc.isa = (TetcastIsa)(TETCAST_ISA_SCALAR + i / TOLERANCES); /* or the widest that there is below */

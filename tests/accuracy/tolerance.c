@@ -81,9 +81,7 @@ static void tolerances_are_kept(void **state) {
     TetcastVolume *volume = volume_of(fixture.context, mesh, i % 5 == 4 ? TETCAST_TRAVERSAL_FACES : TETCAST_TRAVERSAL_SHELL);
     assert_int_equal(tetcast_volume_set_field(volume, fields[i % 3 == 2]), TETCAST_OK);
     TetcastTransferFunction *transfer = random_transfer(fixture.context, &seed);
-    TetcastScene *scene = NULL;
-    assert_int_equal(tetcast_scene_create(fixture.context, volume, &scene), TETCAST_OK);
-    assert_int_equal(tetcast_scene_set_transfer_function(scene, transfer), TETCAST_OK);
+    TetcastScene *scene = scene_of(fixture.context, volume, transfer);
     const double color = largest_color(transfer);
     const int samples = i % 7 == 6 ? 3 : 1;
     render(fixture.context, scene, 0, samples, TETCAST_TYPE_FLOAT64, exact);
@@ -117,9 +115,7 @@ static void what_has_no_bound_is_refused(void **state) {
   Cube cube = cube_create(1, 0);
   TetcastVolume *volume = cube_volume(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
   TetcastTransferFunction *transfer = transfer_of(fixture.context, 1);
-  TetcastScene *scene = NULL;
-  assert_int_equal(tetcast_scene_create(fixture.context, volume, &scene), TETCAST_OK);
-  assert_int_equal(tetcast_scene_set_transfer_function(scene, transfer), TETCAST_OK);
+  TetcastScene *scene = scene_of(fixture.context, volume, transfer);
   const TetcastCamera camera = camera_of(2, 2, 3, 0.5, 0.5, 0.5);
   for (int with_channel = 0; with_channel < 2; ++with_channel) {
     TetcastFrameDesc frame_desc = tetcast_frame_desc_default();

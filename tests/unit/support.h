@@ -217,6 +217,13 @@ static inline TetcastTransferFunction *random_transfer(TetcastContext *context, 
   return transfer;
 }
 
+static inline TetcastScene *scene_of(TetcastContext *context, const TetcastVolume *volume, const TetcastTransferFunction *transfer) {
+  TetcastScene *scene = NULL;
+  assert_int_equal(tetcast_scene_create(context, volume, &scene), TETCAST_OK);
+  assert_int_equal(tetcast_scene_set_transfer_function(scene, transfer), TETCAST_OK);
+  return scene;
+}
+
 /* The default description, with the instruction set that the environment variable TETCAST_TEST_ISA names by its number: the
  * same test serves all kernels. */
 static inline TetcastRenderDesc render_desc(void) {
@@ -235,11 +242,9 @@ static inline double *picture(TetcastContext *context, const TetcastVolume *volu
   desc.height = height;
   desc.pixels = pixels;
   TetcastFrame *frame = NULL;
-  TetcastScene *scene = NULL;
+  TetcastScene *scene = scene_of(context, volume, transfer);
   TetcastRenderStats own;
   assert_int_equal(tetcast_frame_create(context, &desc, &frame), TETCAST_OK);
-  assert_int_equal(tetcast_scene_create(context, volume, &scene), TETCAST_OK);
-  assert_int_equal(tetcast_scene_set_transfer_function(scene, transfer), TETCAST_OK);
   const TetcastRenderDesc render = render_desc();
   assert_int_equal(tetcast_scene_render(scene, camera, &render, frame, stats ? stats : &own), TETCAST_OK);
   assert_int_equal((stats ? stats : &own)->lost, 0);
