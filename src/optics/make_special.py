@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes special_table.h: piecewise Chebyshev fits, as polynomials, of two functions on t = 1/(1 + x) in [0, 1].
+"""Makes special_table.h: piecewise Chebyshev fits, as polynomials, of two functions on [0, 1].
 
-  mills:  (1 + x) sqrt(pi/2) erfcx(x/sqrt(2))      Mills' ratio of the normal distribution, scaled to lie in [1, 1.26]
-  dawson: (1 + 2x^2) D(x) / x                      Dawson's integral, scaled to lie in [1, 1.31]
+  mills:  (1 + x) sqrt(pi/2) erfcx(x/sqrt(2)), x = 1/t - 1        Mills' ratio of the normal distribution, scaled to lie in [1, 1.26]
+  dawson: 2 (2 + y) D(y), y = 2 (1/t - 1)                         Dawson's integral, scaled to lie in [0, 3.27]
 
-Both are smooth and bounded away from 0, so that a relative error of a few ulp is all that is left. Needs mpmath.
+The scales are such that nothing is left to be done but a division (segment.c). Needs mpmath.
 """
 import mpmath as mp
 
 mp.mp.dps = 60
-PIECES, DEGREE = 64, 10
+DEGREE = 7
 
 
 def mills(t):
@@ -32,21 +32,18 @@ def mills(t):
 def dawson(t):
     if t == 0:
         return mp.mpf(1)
-    if t == 1:
-        return mp.mpf(1)
-    x = 1 / t - 1
-    if x > 30:  # asymptotic: D(x) ~ sum (2k-1)!! / (2^(k+1) x^(2k+1))
+    y = 2 * (1 / t - 1)
+    if y > 30:  # asymptotic: D(y) ~ sum (2k-1)!! / (2^(k+1) y^(2k+1))
         s = term = mp.mpf(1)
         for k in range(1, 400):
-            new = term * (2 * k - 1) / (2 * x * x)
+            new = term * (2 * k - 1) / (2 * y * y)
             if abs(new) > abs(term):
                 break
             term = new
             s += term
-        return (1 + 2 * x * x) / x * s / (2 * x)
-    with mp.workdps(60 + int(x * x / 2)):
-        value = mp.sqrt(mp.pi) / 2 * mp.exp(-x * x) * mp.erfi(x)
-        return (1 + 2 * x * x) * value / x
+        return (2 + y) / y * s
+    with mp.workdps(60 + int(y * y / 2)):
+        return (2 + y) * mp.sqrt(mp.pi) * mp.exp(-y * y) * mp.erfi(y)
 
 
 def fit(function, lower, upper):
@@ -71,24 +68,25 @@ def fit(function, lower, upper):
     for k in range(101):
         v = mp.mpf(k) / 50 - 1
         exact = function((lower + upper) / 2 + (upper - lower) / 2 * v)
-        worst = max(worst, abs(mp.polyval(poly[::-1], v) / exact - 1))
+        worst = max(worst, abs(mp.polyval(poly[::-1], v) - exact))
     return poly, worst
 
 
 def main():
+    functions = (("mills", mills, 64), ("dawson", dawson, 192))
     print("/* SPDX-License-Identifier: Apache-2.0 */")
-    print("/* Made by make_special.py. Piece i covers t in [i, i + 1] / %d; coefficients of rising powers of v in [-1, 1]. */" % PIECES)
-    print("enum { TC_SPECIAL_PIECES = %d, TC_SPECIAL_DEGREE = %d };" % (PIECES, DEGREE))
-    for name, function in (("mills", mills), ("dawson", dawson)):
+    print("/* Made by make_special.py. Row i of a function's n covers t in [i, i + 1] / n; coefficients of rising powers\n"
+          " * of v in [-1, 1]. */")
+    print("const _Alignas(64) double tc_special_table[TC_MILLS_ROWS + TC_DAWSON_ROWS][TC_SPECIAL_TERMS] = {")
+    for name, function, pieces in functions:
         rows, worst = [], 0
-        for i in range(PIECES):
-            poly, error = fit(function, mp.mpf(i) / PIECES, mp.mpf(i + 1) / PIECES)
+        for i in range(pieces):
+            poly, error = fit(function, mp.mpf(i) / pieces, mp.mpf(i + 1) / pieces)
             worst = max(worst, error)
             rows.append("  {" + ", ".join(float(c).hex() for c in poly) + "},")
-        print("/* largest relative error of the fit: %s */" % mp.nstr(worst, 3))
-        print("static const double tc_%s_table[TC_SPECIAL_PIECES][TC_SPECIAL_DEGREE + 1] = {" % name)
+        print("  /* %s: largest error of the fit: %s */" % (name, mp.nstr(worst, 3)))
         print("\n".join(rows))
-        print("};")
+    print("};")
 
 
 if __name__ == "__main__":

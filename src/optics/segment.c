@@ -8,44 +8,29 @@
 /* Largest a, so that nothing that is computed from two of them overflows. */
 static const double MAX_DEPTH = 1e300;
 
-/* p(t), t in [0, 1], from a table of polynomials (Horner in v ∈ [−1, 1], coefficients fall quickly: error below 2 ulp). */
-static double table_value(const double table[TC_SPECIAL_PIECES][TC_SPECIAL_DEGREE + 1], double t) {
-  const double scaled = t * TC_SPECIAL_PIECES;
+/* The value of the table's rows first … first + rows − 1 at t in [0, 1] (Horner; coefficients fall quickly: error below 2 ulp). */
+static double table_value(int first, int rows, double t) {
+  const double scaled = t * rows;
   int i = (int)scaled;
-  if (i > TC_SPECIAL_PIECES - 1) i = TC_SPECIAL_PIECES - 1;
+  if (i > rows - 1) i = rows - 1;
   const double v = 2 * (scaled - i) - 1;
-  const double *c = table[i];
-  double p = c[TC_SPECIAL_DEGREE];
-  for (int k = TC_SPECIAL_DEGREE - 1; k >= 0; --k) p = p * v + c[k];
+  const double *c = tc_special_table[first + i];
+  double p = c[TC_SPECIAL_TERMS - 1];
+  for (int k = TC_SPECIAL_TERMS - 2; k >= 0; --k) p = p * v + c[k];
   return p;
 }
 
-/* ∫₀^∞ exp(−x u − b u²/2) du = M(x/√b)/√b with Mills' ratio M; b ≥ 0, x > 0 or b > 0. With the table's scaling of M this
- * is bounded arithmetic for every x and b, b = 0 included. */
-static double mills_integral(double x, double root_b) {
-  const double sum = root_b + x;
-  return table_value(tc_mills_table, root_b / sum) / sum;
-}
-
-/* √(2/β) D(x/√(2β)) with Dawson's integral D; β > 0. */
-static double dawson_integral(double x, double beta, double root_2beta) {
-  const double h = table_value(tc_dawson_table, root_2beta / (root_2beta + x));
-  return x > 1 ? h / (beta / x + x) : h * x / (beta + x * x);
-}
-
-/* Ψ for T ≥ 1. For rising extinction Ψ = f(a) − e^−T f(a1) with f above and f(a1) ≤ f(a). For falling extinction, seen from
- * the far end, Ψ = √(2/β) [D(a/√(2β)) − e^−T D(a1/√(2β))], β = a − a1. With T ≥ 1 neither difference loses more than
- * two bits, nor do 1 − Ψ and Ψ − e^−T. */
+/* Ψ for T ≥ 1. For rising extinction Ψ = f(a) − e^−T f(a1) with f(a1) ≤ f(a):
+ *     f(x) = ∫₀^∞ exp(−x u − b u²/2) du = M(x/√b)/√b,   M Mills' ratio.
+ * For falling extinction, seen from the far end, Ψ = f(a) − e^−T f(a1) with
+ *     f(x) = √(2/β) D(x/√(2β)),   β = a − a1,   D Dawson's integral.
+ * With T ≥ 1 neither difference loses more than two bits, nor do 1 − Ψ and Ψ − e^−T. Either f is p(t)/(r + x), t = r/(r + x), with the
+ * table's p, which is bounded, and r = √b or √(8β): bounded arithmetic for every x and b, b = 0 included. */
 static double psi(double a, double a1, double transmittance) {
-  const double b = a1 - a;
-  if (b >= 0) {
-    const double root_b = sqrt(b);
-    const double near = mills_integral(a, root_b);
-    return transmittance > 0 ? near - transmittance * mills_integral(a1, root_b) : near;
-  }
-  const double root = sqrt(-2 * b);
-  const double near = dawson_integral(a, -b, root);
-  return transmittance > 0 ? near - transmittance * dawson_integral(a1, -b, root) : near;
+  const double b = a1 - a, r = sqrt(b >= 0 ? b : -8 * b);
+  const int first = b >= 0 ? 0 : TC_MILLS_ROWS, rows = b >= 0 ? TC_MILLS_ROWS : TC_DAWSON_ROWS;
+  const double near = table_value(first, rows, r / (r + a)) / (r + a);
+  return transmittance > 0 ? near - transmittance * (table_value(first, rows, r / (r + a1)) / (r + a1)) : near;
 }
 
 /* w₁ − w₀ for T < 1, by the Taylor series of e^−τ about the middle. With v = 2u − 1, d = (a1 − a)/2:

@@ -27,4 +27,8 @@ TcSegment tc_segment_thin(double a, double a1);
 /* The same for a = a1 = depth: no Ψ. */
 TcSegment tc_segment_constant(double depth);
 
+/* Mills' ratio and Dawson's integral, for Ψ (segment.c, make_special.py). */
+enum { TC_MILLS_ROWS = 64, TC_DAWSON_ROWS = 192, TC_SPECIAL_TERMS = 8 };
+extern const double tc_special_table[TC_MILLS_ROWS + TC_DAWSON_ROWS][TC_SPECIAL_TERMS];
+
 #endif
