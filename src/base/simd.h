@@ -227,4 +227,25 @@ TC_INLINE void tc_transpose(const TcRecord record[TC_LANES], TcVec component[4])
 #endif
 }
 
+/* Four doubles from each of base[offset[i]], base[offset[i] + 4], …: component[4 k + j][i] is double j of record k of lane i. Loads and
+ * shuffles, as above. `count`, of records, is a constant wherever this is used. */
+TC_INLINE void tc_load_records(const double *base, TcLong offset, const int count, TcVec component[]) {
+  int64_t at[TC_LANES];
+  memcpy(at, &offset, sizeof at);
+  for (int k = 0; k < count; ++k) {
+    TcRecord record[TC_LANES];
+    for (int i = 0; i < TC_LANES; ++i) memcpy(&record[i], base + at[i] + 4 * k, sizeof record[i]);
+    tc_transpose(record, component + 4 * k);
+  }
+}
+
+/* The whole number nearest to a, |a| < 2⁵¹; as a double. */
+TC_INLINE TcLong tc_nearest(TcVec a, TcVec *whole) {
+  const TcVec shift = tc_set(0x1.8p52), sum = a + shift;
+  *whole = sum - shift;
+  return (TcLong)sum - (TcLong)shift;
+}
+
+TC_INLINE TcLong tc_select_long(TcMask m, TcLong a, TcLong b) { return (TcLong)tc_select(m, (TcVec)a, (TcVec)b); }
+
 #endif

@@ -22,58 +22,68 @@ TC_INLINE TcVec tc_exp(TcVec x) {
   static const double c[] = {1,           1,           1. / 2,       1. / 6,        1. / 24,        1. / 120,       1. / 720,
                              1. / 5040,   1. / 40320,  1. / 362880,  1. / 3628800,  1. / 39916800,  1. / 479001600, 1. / 6227020800};
   x = tc_max(x, tc_set(-1400)); /* where both powers of two are in range, and their product is not */
-  const TcVec shift = tc_set(0x1.8p52), n = (x * 0x1.71547652b82fep0 + shift) - shift;
+  TcVec n, half_n;
+  const TcLong whole = tc_nearest(x * 0x1.71547652b82fep0, &n), half = tc_nearest(0.5 * n, &half_n); /* 2ⁿ alone could underflow */
   TcVec r = tc_madd(n, tc_set(-0x1.62e42feep-1), x); /* ln 2 in 32 bits: the product is exact */
   r = tc_madd(n, tc_set(-0x1.a39ef35793c76p-33), r);
-  const TcLong whole = tc_to_long(n), half = whole >> 1; /* twice, as 2ⁿ alone could underflow */
   return tc_polynomial(r, c, 14) * tc_power_of_two(half) * tc_power_of_two(whole - half);
 }
 
-/* T ≤ 1/4, thinner with S. With h = T/2, g = e^−h − 1: α = −g (2 + g), and, as in weight_difference() of segment.c,
+/* T ≤ 1/16, 1/4 or 1/2. With h = T/2, g = e^−h − 1: α = −g (2 + g), and, as in weight_difference() of segment.c,
  *
  *     w₁ − w₀ = e^(d/4 − h) (d A − T² B),   x = T²/4, y = −d/4,
  *     A = ½ ∫₋₁¹ v² cosh(T v/2) e^(−d v²/4) dv       = Σ xⁱ yʲ / ((2i)! j! (2i + 2j + 3)),
  *     B = ½ ∫₋₁¹ v sinh(T v/2)/T e^(−d v²/4) dv      = ½ Σ xⁱ yʲ / ((2i + 1)! j! (2i + 2j + 3)).
  *
- * What the sums leave out is below 3e-16 T in w₁ − w₀: |y| ≤ 1/16, x ≤ 1/64 (S: 1/64, 1/1024). */
+ * What the sums leave out is below 3e-16 T in w₁ − w₀: |y| ≤ T/4, x = T²/4. */
 #define TC_A(i, f, j, g) (1. / ((f) * (g) * (2. * (i) + 2. * (j) + 3.)))
-#define TC_A_ROW(i, f)                                                                                                \
-  {TC_A(i, f, 0, 1.),    TC_A(i, f, 1, 1.),    TC_A(i, f, 2, 2.),     TC_A(i, f, 3, 6.),     TC_A(i, f, 4, 24.), \
-   TC_A(i, f, 5, 120.), TC_A(i, f, 6, 720.), TC_A(i, f, 7, 5040.), TC_A(i, f, 8, 40320.)}
+#define TC_A_ROW(i, f)                                                                                                 \
+  {TC_A(i, f, 0, 1.),    TC_A(i, f, 1, 1.),    TC_A(i, f, 2, 2.),    TC_A(i, f, 3, 6.),     TC_A(i, f, 4, 24.),    \
+   TC_A(i, f, 5, 120.), TC_A(i, f, 6, 720.), TC_A(i, f, 7, 5040.), TC_A(i, f, 8, 40320.), TC_A(i, f, 9, 362880.)}
+enum { TC_SERIES_ROWS = 6, TC_SERIES_TERMS = 10 };
+static const double tc_series_a[TC_SERIES_ROWS][TC_SERIES_TERMS] = {TC_A_ROW(0, 1.),   TC_A_ROW(1, 2.),     TC_A_ROW(2, 24.),
+                                                                    TC_A_ROW(3, 720.), TC_A_ROW(4, 40320.), TC_A_ROW(5, 3628800.)};
+static const double tc_series_b[TC_SERIES_ROWS][TC_SERIES_TERMS] = {TC_A_ROW(0, 2.),     TC_A_ROW(1, 12.),     TC_A_ROW(2, 240.),
+                                                                    TC_A_ROW(3, 10080.), TC_A_ROW(4, 725760.), TC_A_ROW(5, 79833600.)};
 
-static const double tc_segments_a[5][9] = {TC_A_ROW(0, 1.), TC_A_ROW(1, 2.), TC_A_ROW(2, 24.), TC_A_ROW(3, 720.), TC_A_ROW(4, 40320.)};
-static const double tc_segments_b[5][9] = {TC_A_ROW(0, 2.), TC_A_ROW(1, 12.), TC_A_ROW(2, 240.), TC_A_ROW(3, 10080.),
-                                           TC_A_ROW(4, 725760.)};
+typedef enum TcSeries { TC_TO_16TH, TC_TO_4TH, TC_TO_HALF } TcSeries;
 
-/* g = e^−h − 1 by its series, for h ≤ 1/8 by ten terms. */
+/* Terms of A's and B's rows, of g, of e^−y. */
+typedef struct TcSeriesTerms {
+  int a[TC_SERIES_ROWS], b[TC_SERIES_ROWS], g, e;
+} TcSeriesTerms;
+static const TcSeriesTerms tc_series_terms[] = {
+  [TC_TO_16TH] = {{7, 5, 4, 2}, {6, 4, 2, 1}, 8, 7},
+  [TC_TO_4TH] = {{9, 8, 6, 4, 3}, {8, 6, 4, 2, 1}, 10, 9},
+  [TC_TO_HALF] = {{10, 9, 8, 7, 5, 3}, {10, 9, 7, 6, 4, 1}, 12, 11},
+};
+
+/* g = e^−h − 1 by its series: 8, 10, 12 terms for h ≤ 1/32, 1/8, 1/4. */
 TC_INLINE TcVec tc_segments_g(TcVec h, int count) {
-  static const double terms[] = {-1,         1. / 2,      -1. / 6,      1. / 24,     -1. / 120,
-                                 1. / 720,   -1. / 5040,  1. / 40320,   -1. / 362880, 1. / 3628800};
+  static const double terms[] = {-1,          1. / 2,     -1. / 6,      1. / 24,      -1. / 120,      1. / 720,
+                                 -1. / 5040,  1. / 40320, -1. / 362880, 1. / 3628800, -1. / 39916800, 1. / 479001600};
   return h * tc_polynomial(h, terms, count);
 }
 
-TC_INLINE TcSegments tc_segments_series(TcVec t, TcVec d, const int thinner) {
-  static const double e_terms[] = {1, 1, 1. / 2, 1. / 6, 1. / 24, 1. / 120, 1. / 720, 1. / 5040, 1. / 40320};
-  const double(*a)[9] = tc_segments_a, (*b)[9] = tc_segments_b;
-  const TcVec h = 0.5 * t, x = h * h, y = -0.25 * d;
-  const TcVec g = tc_segments_g(h, thinner ? 8 : 10);
-  const TcVec e = tc_polynomial(-y, e_terms, thinner ? 7 : 9);
-  TcVec sum_a, sum_b;
-  if (thinner) {
-    sum_a = tc_madd(tc_polynomial(y, a[3], 2), x, tc_polynomial(y, a[2], 4));
-    sum_a = tc_madd(tc_madd(sum_a, x, tc_polynomial(y, a[1], 5)), x, tc_polynomial(y, a[0], 7));
-    sum_b = tc_madd(tc_set(b[3][0]), x, tc_polynomial(y, b[2], 2));
-    sum_b = tc_madd(tc_madd(sum_b, x, tc_polynomial(y, b[1], 4)), x, tc_polynomial(y, b[0], 6));
-  } else {
-    sum_a = tc_madd(tc_polynomial(y, a[4], 3), x, tc_polynomial(y, a[3], 4));
-    sum_a = tc_madd(sum_a, x, tc_polynomial(y, a[2], 6));
-    sum_a = tc_madd(tc_madd(sum_a, x, tc_polynomial(y, a[1], 8)), x, tc_polynomial(y, a[0], 9));
-    sum_b = tc_madd(tc_set(b[4][0]), x, tc_polynomial(y, b[3], 2));
-    sum_b = tc_madd(sum_b, x, tc_polynomial(y, b[2], 4));
-    sum_b = tc_madd(tc_madd(sum_b, x, tc_polynomial(y, b[1], 6)), x, tc_polynomial(y, b[0], 8));
+/* Σ xⁱ Σ c[i][j] yʲ, j < terms[i]. */
+TC_INLINE TcVec tc_series_sum(TcVec x, TcVec y, const double c[TC_SERIES_ROWS][TC_SERIES_TERMS], const int terms[TC_SERIES_ROWS]) {
+  TcVec sum = tc_set(0);
+  for (int i = TC_SERIES_ROWS - 1; i >= 0; --i) {
+    if (!terms[i]) continue;
+    const TcVec row = tc_polynomial(y, c[i], terms[i]);
+    sum = i + 1 < TC_SERIES_ROWS && terms[i + 1] ? tc_madd(sum, x, row) : row;
   }
+  return sum;
+}
+
+TC_INLINE TcSegments tc_segments_series(TcVec t, TcVec d, const TcSeries range) {
+  static const double e_terms[] = {1, 1, 1. / 2, 1. / 6, 1. / 24, 1. / 120, 1. / 720, 1. / 5040, 1. / 40320, 1. / 362880, 1. / 3628800};
+  const TcSeriesTerms *terms = &tc_series_terms[range];
+  const TcVec h = 0.5 * t, x = h * h, y = -0.25 * d;
+  const TcVec g = tc_segments_g(h, terms->g), e = tc_polynomial(-y, e_terms, terms->e);
   const TcVec alpha = -g * (2 + g);
-  const TcVec difference = tc_madd(g, e, e) * (d * sum_a - t * t * sum_b);
+  const TcVec a = tc_series_sum(x, y, tc_series_a, terms->a), b = tc_series_sum(x, y, tc_series_b, terms->b);
+  const TcVec difference = tc_madd(g, e, e) * (d * a - t * t * b);
   return (TcSegments){0.5 * (alpha - difference), 0.5 * (alpha + difference), 1 - alpha};
 }
 
@@ -88,39 +98,62 @@ TC_INLINE TcSegments tc_segments_thin(TcVec t, TcVec d) {
   return (TcSegments){0.5 * (alpha - difference), 0.5 * (alpha + difference), 1 - alpha};
 }
 
-/* The lanes of `lanes` one by one. */
-static __attribute__((noinline)) void tc_segments_deep(unsigned lanes, const TcVec *a, const TcVec *a1, TcSegments *result) {
-  double w0[TC_LANES], w1[TC_LANES], transmittance[TC_LANES], depth[2][TC_LANES];
-  memcpy(w0, &result->w0, sizeof w0);
-  memcpy(w1, &result->w1, sizeof w1);
-  memcpy(transmittance, &result->transmittance, sizeof transmittance);
-  memcpy(depth[0], a, sizeof depth[0]);
-  memcpy(depth[1], a1, sizeof depth[1]);
-  for (int i = 0; i < TC_LANES; ++i) {
-    if (!(lanes >> i & 1)) continue;
-    const TcSegment segment = tc_segment(depth[0][i], depth[1][i]);
-    w0[i] = segment.w0;
-    w1[i] = segment.w1;
-    transmittance[i] = segment.transmittance;
-  }
-  memcpy(&result->w0, w0, sizeof w0);
-  memcpy(&result->w1, w1, sizeof w1);
-  memcpy(&result->transmittance, transmittance, sizeof transmittance);
+/* The table's value at t in the rows first … first + rows − 1, both whole, and different from lane to lane. */
+TC_INLINE TcVec tc_special(TcVec first, TcVec rows, TcVec t) {
+  TcVec i, c[TC_SPECIAL_TERMS];
+  const TcVec scaled = t * rows - 0.5; /* half a row off: the nearest number is that of the row */
+  const TcLong row = tc_nearest(tc_min(scaled, rows - 1) + first, &i);
+  tc_load_records(tc_special_table[0], row * TC_SPECIAL_TERMS, TC_SPECIAL_TERMS / 4, c);
+  const TcVec v = 2 * (scaled - (i - first));
+  TcVec sum = c[TC_SPECIAL_TERMS - 1];
+  for (int k = TC_SPECIAL_TERMS - 2; k >= 0; --k) sum = tc_madd(sum, v, c[k]);
+  return sum;
 }
 
-/* Any a, a1 ≥ 0 in the lanes of `mask`; t = (a + a1)/2. If all depths are up to `thin`, by tc_segments_thin(). */
+/* T > 1/2, as psi() of segment.c does it. */
+TC_INLINE TcSegments tc_segments_thick(TcVec a, TcVec a1) {
+  const TcVec most = tc_set(1e300), zero = tc_set(0);
+  a = tc_min(a, most);
+  a1 = tc_min(a1, most);
+  const TcVec b = a1 - a;
+  const TcMask rises = tc_le(zero, b);
+  const TcVec first = tc_select(rises, zero, tc_set(TC_MILLS_ROWS)), rows = tc_select(rises, tc_set(TC_MILLS_ROWS), tc_set(TC_DAWSON_ROWS));
+  const TcVec r = tc_sqrt(tc_select(rises, b, -8 * b)), near = 1 / (r + a), far = 1 / (r + a1);
+  const TcVec e = tc_exp(-0.5 * a - 0.5 * a1);
+  const TcVec psi = tc_special(first, rows, r * near) * near - e * (tc_special(first, rows, r * far) * far);
+  return (TcSegments){1 - psi, psi - e, e};
+}
+
+/* tc_segments() where a depth is above 1/4. */
+static __attribute__((noinline)) void tc_segments_deep(TcMask mask, double thin, const TcVec *ends, const TcVec *depth,
+                                                       TcSegments *result) {
+  const TcVec a = ends[0], a1 = ends[1], t = *depth, one = tc_set(1);
+  const TcMask thick = tc_and(mask, tc_gt(t, tc_set(0.5))), others = tc_and_not(mask, thick);
+  TcSegments segments = {tc_set(0), tc_set(0), one};
+  if (tc_any(others)) {
+    const TcVec d = 0.5 * a1 - 0.5 * a;
+    if (thin > 0 && !tc_any(tc_and(others, tc_gt(t, tc_set(thin))))) segments = tc_segments_thin(t, d);
+    else if (!tc_any(tc_and(others, tc_gt(t, tc_set(0x1p-4))))) segments = tc_segments_series(t, d, TC_TO_16TH);
+    else segments = tc_segments_series(t, d, TC_TO_HALF);
+  }
+  if (tc_any(thick)) {
+    const TcSegments deep = tc_segments_thick(tc_select(thick, a, one), tc_select(thick, a1, one));
+    segments.w0 = tc_select(thick, deep.w0, segments.w0);
+    segments.w1 = tc_select(thick, deep.w1, segments.w1);
+    segments.transmittance = tc_select(thick, deep.transmittance, segments.transmittance);
+  }
+  *result = segments;
+}
+
+/* Any a, a1 ≥ 0 in the lanes of `mask`, 0 in the others; t = (a + a1)/2. If all depths are up to `thin`, by tc_segments_thin(). */
 TC_INLINE TcSegments tc_segments(TcMask mask, TcVec a, TcVec a1, TcVec t, double thin) {
   const TcVec d = 0.5 * a1 - 0.5 * a;
   if (thin > 0 && !tc_any(tc_and(mask, tc_gt(t, tc_set(thin))))) return tc_segments_thin(t, d);
-  if (!tc_any(tc_and(mask, tc_gt(t, tc_set(0x1p-4))))) return tc_segments_series(t, d, 1);
-  TcSegments result = tc_segments_series(t, d, 0);
-  const unsigned deep = tc_bits(tc_and(mask, tc_gt(t, tc_set(0x1p-2))));
-  if (deep) {
-    const TcVec copy[2] = {a, a1};
-    TcSegments all = result;
-    tc_segments_deep(deep, &copy[0], &copy[1], &all);
-    result = all;
-  }
+  if (!tc_any(tc_and(mask, tc_gt(t, tc_set(0x1p-4))))) return tc_segments_series(t, d, TC_TO_16TH);
+  if (!tc_any(tc_and(mask, tc_gt(t, tc_set(0x1p-2))))) return tc_segments_series(t, d, TC_TO_4TH);
+  const TcVec ends[2] = {a, a1};
+  TcSegments result;
+  tc_segments_deep(mask, thin, ends, &t, &result);
   return result;
 }
 
