@@ -48,9 +48,9 @@ static const double tc_series_b[TC_SERIES_ROWS][TC_SERIES_TERMS] = {TC_A_ROW(0, 
 
 typedef enum TcSeries { TC_TO_16TH, TC_TO_4TH, TC_TO_HALF } TcSeries;
 
-/* Terms of A's and B's rows, of g, of e^−y. */
+/* Terms of A's and B's rows, which end with 0, of g, of e^−y. */
 typedef struct TcSeriesTerms {
-  int a[TC_SERIES_ROWS], b[TC_SERIES_ROWS], g, e;
+  int a[TC_SERIES_ROWS + 1], b[TC_SERIES_ROWS + 1], g, e;
 } TcSeriesTerms;
 static const TcSeriesTerms tc_series_terms[] = {
   [TC_TO_16TH] = {{7, 5, 4, 2}, {6, 4, 2, 1}, 8, 7},
@@ -65,15 +65,21 @@ TC_INLINE TcVec tc_segments_g(TcVec h, int count) {
   return h * tc_polynomial(h, terms, count);
 }
 
-/* Σ xⁱ Σ c[i][j] yʲ, j < terms[i]. */
-TC_INLINE TcVec tc_series_sum(TcVec x, TcVec y, const double c[TC_SERIES_ROWS][TC_SERIES_TERMS], const int terms[TC_SERIES_ROWS]) {
-  TcVec sum = tc_set(0);
-  for (int i = TC_SERIES_ROWS - 1; i >= 0; --i) {
-    if (!terms[i]) continue;
-    const TcVec row = tc_polynomial(y, c[i], terms[i]);
-    sum = i + 1 < TC_SERIES_ROWS && terms[i + 1] ? tc_madd(sum, x, row) : row;
-  }
-  return sum;
+/* Σ c[j] yʲ + x sum, j < terms[0]; `sum` is 0 where there are no terms[1]. */
+TC_INLINE TcVec tc_series_row(TcVec sum, TcVec x, TcVec y, const double c[TC_SERIES_TERMS], const int terms[2]) {
+  if (!terms[0]) return sum;
+  const TcVec row = tc_polynomial(y, c, terms[0]);
+  return terms[1] ? tc_madd(sum, x, row) : row;
+}
+
+/* Σ xⁱ Σ c[i][j] yʲ, j < terms[i]. Written out, as compilers leave a loop over rows a loop. */
+TC_INLINE TcVec tc_series_sum(TcVec x, TcVec y, const double c[TC_SERIES_ROWS][TC_SERIES_TERMS], const int terms[TC_SERIES_ROWS + 1]) {
+  TcVec sum = tc_series_row(tc_set(0), x, y, c[5], terms + 5);
+  sum = tc_series_row(sum, x, y, c[4], terms + 4);
+  sum = tc_series_row(sum, x, y, c[3], terms + 3);
+  sum = tc_series_row(sum, x, y, c[2], terms + 2);
+  sum = tc_series_row(sum, x, y, c[1], terms + 1);
+  return tc_series_row(sum, x, y, c[0], terms);
 }
 
 TC_INLINE TcSegments tc_segments_series(TcVec t, TcVec d, const TcSeries range) {

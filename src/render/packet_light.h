@@ -3,6 +3,8 @@
 #ifndef TC_RENDER_PACKET_LIGHT_H
 #define TC_RENDER_PACKET_LIGHT_H
 
+#include <stddef.h>
+
 #include "optics/segment_simd.h"
 #include "optics/transfer.h"
 
@@ -33,7 +35,6 @@ TC_INLINE void tc_lights_add_part(TcLights *lights, const TcPiece *piece, double
   TcVec low, high, depth; /* weights of the piece's colours at its two ends */
   TcSegments segments;
   if (piece->constant) {
-    if (piece->at_low.extinction == 0) return;
     depth = piece->at_low.extinction * length;
     segments = tc_segments_constant(mask, depth);
     low = lights->block_transmittance * segments.w0;
@@ -57,27 +58,79 @@ TC_INLINE void tc_lights_add_part(TcLights *lights, const TcPiece *piece, double
   lights->block_depth += depth;
 }
 
-/* Segments that lie in several pieces, part by part: each turn takes the piece where the first lane is, with all lanes that are there. */
-static __attribute__((noinline)) void tc_lights_split(TcLights *lights, const TcPieces *pieces, double thin, TcMask pending,
+/* A lane's piece each, as it lies in TcPiece. */
+typedef struct TcLanePieces {
+  TcVec low, high, k0, color0[3], k1, color1[3], inverse, rest;
+} TcLanePieces;
+
+/* The first eight numbers of the pieces, or all. */
+TC_INLINE TcLanePieces tc_load_pieces(const TcPieces *pieces, TcLong at, const bool all) {
+  enum { WORDS = sizeof(TcPiece) / sizeof(double) };
+  _Static_assert(sizeof(TcPiece) == 12 * sizeof(double) && offsetof(TcPiece, inverse) == 10 * sizeof(double), "loaded as three records");
+  TcVec word[WORDS];
+  tc_load_records(&pieces->pieces->low, at * WORDS, all ? 3 : 2, word);
+  TcLanePieces piece;
+  memcpy(&piece, word, sizeof piece);
+  return piece;
+}
+
+/* tc_piece_above() */
+TC_INLINE TcLong tc_find_pieces(const TcPieces *pieces, TcVec s) {
+  TcLong at = {0};
+  for (int64_t i = 0; i < pieces->count; ++i) at = tc_select_long(tc_le(tc_set(pieces->knots[i]), s), at + 1, at);
+  return at;
+}
+
+/* Parts of a segment, a lane each, none of them empty in the lanes of `here`, and of length 0 in the others. */
+TC_INLINE void tc_lights_add_parts(TcLights *lights, const TcLanePieces *piece, double thin, TcMask here, TcVec length, TcVec s0, TcVec s1) {
+  const TcVec zero = tc_set(0), one = tc_set(1);
+  const TcMask constant = tc_eq(piece->inverse, zero);
+  const TcVec near_high = tc_select(constant, zero, (s0 - piece->low) * piece->inverse);
+  const TcVec near_low = tc_select(constant, one, (piece->high - s0) * piece->inverse);
+  const TcVec far_high = tc_select(constant, zero, (s1 - piece->low) * piece->inverse);
+  const TcVec far_low = tc_select(constant, one, (piece->high - s1) * piece->inverse);
+  const TcVec a = tc_madd(near_high, piece->k1, near_low * piece->k0) * length, a1 = tc_madd(far_high, piece->k1, far_low * piece->k0) * length;
+  const TcVec depth = 0.5 * a + 0.5 * a1;
+  const TcSegments segments = tc_segments(here, a, a1, depth, thin);
+  const TcVec w0 = lights->block_transmittance * segments.w0, w1 = lights->block_transmittance * segments.w1;
+  const TcVec low = tc_madd(near_low, w0, far_low * w1), high = tc_madd(near_high, w0, far_high * w1);
+  for (int k = 0; k < 3; ++k) {
+    lights->block_color[k] = tc_madd(high, piece->color1[k], tc_madd(low, piece->color0[k], lights->block_color[k]));
+  }
+  lights->block_transmittance *= segments.transmittance;
+  lights->block_depth += depth;
+}
+
+/* Segments that lie in several pieces: lanes pass from piece to piece, each where it is. Lanes in empty pieces pass on first, so that
+ * the others are evaluated together. */
+static __attribute__((noinline)) void tc_lights_split(TcLights *lights, const TcPieces *pieces, double thin, TcMask mask,
                                                       const TcVec *whole_length, const TcVec *from, const TcVec *to) {
-  const TcVec zero = tc_set(0), length = *whole_length, s1 = *to, whole = tc_abs(s1 - *from);
-  const TcMask rising = tc_le(*from, s1);
-  TcVec s0 = *from;
+  const TcVec zero = tc_set(0), length = *whole_length;
+  const TcVec s1 = tc_select(mask, *to, zero), whole = tc_abs(s1 - tc_select(mask, *from, zero));
+  TcVec s0 = tc_select(mask, *from, zero);
+  const TcMask rising = tc_le(s0, s1);
+  const TcLong none = {0}, step = tc_select_long(rising, none + 1, none - 1);
+  TcLong at = tc_find_pieces(pieces, s0);
+  TcMask pending = mask;
   do {
-    const int lane = __builtin_ctz(tc_bits(pending));
-    lights->piece = s0[lane] <= s1[lane] ? tc_piece_above(pieces, s0[lane]) : tc_piece_below(pieces, s0[lane]);
-    const TcPiece *piece = &pieces->pieces[lights->piece];
-    const TcVec low = tc_set(piece->low), high = tc_set(piece->high);
-    TcMask here = tc_or(tc_and(rising, tc_and(tc_le(low, s0), tc_lt(s0, high))),
-                        tc_and_not(tc_and(tc_lt(low, s0), tc_le(s0, high)), rising));
-    here = tc_and(here, pending);
-    const TcVec end = tc_select(rising, tc_min(s1, high), tc_max(s1, low));
-    const TcVec part = tc_select(tc_eq(whole, zero), length, length * (tc_abs(end - s0) / whole));
-    const TcVec safe = tc_set(isfinite(piece->low) ? piece->low : isfinite(piece->high) ? piece->high : 0);
-    tc_lights_add_part(lights, piece, thin, here, tc_select(here, part, zero), tc_select(here, s0, safe), tc_select(here, end, safe));
+    TcLanePieces piece = tc_load_pieces(pieces, at, false);
+    const TcVec end = tc_select(rising, tc_min(s1, piece.high), tc_max(s1, piece.low));
+    /* A falling lane on a knot is above it, and passes on from there with a part of length 0. */
+    const TcMask last = tc_eq(end, s1), unmoved = tc_and_not(tc_eq(end, s0), last);
+    TcMask here = tc_and(pending, tc_or(tc_le(piece.k0 + piece.k1, zero), unmoved));
+    if (!tc_any(here)) {
+      here = pending;
+      const TcVec part = length * tc_select(tc_eq(whole, zero), tc_set(1), tc_abs(end - s0) / whole);
+      piece = tc_load_pieces(pieces, at, true);
+      tc_lights_add_parts(lights, &piece, thin, here, tc_select(here, part, zero), s0, end);
+    }
     s0 = tc_select(here, end, s0);
-    pending = tc_and_not(pending, tc_and(here, tc_eq(s0, s1)));
+    at = tc_select_long(tc_and_not(here, last), at + step, at);
+    pending = tc_and_not(pending, tc_and(here, last));
   } while (tc_any(pending));
+  int64_t pieces_at[TC_LANES];
+  memcpy(pieces_at, &at, sizeof at);
+  lights->piece = pieces_at[__builtin_ctz(tc_bits(mask))];
 }
 
 /* tc_light_add() in the lanes of `mask`. */
@@ -86,16 +139,14 @@ TC_INLINE void tc_lights_add(TcLights *lights, const TcPieces *pieces, double th
   const TcVec low = tc_set(piece->low), high = tc_set(piece->high), least = tc_min(s0, s1), most = tc_max(s0, s1);
   const TcMask here = tc_and(mask, tc_and(tc_and(tc_le(low, least), tc_lt(least, high)), tc_le(most, high)));
   if (tc_bits(here) == tc_bits(mask)) {
-    if (piece->constant && piece->at_low.extinction == 0) return;
+    if (piece->at_low.extinction == 0 && piece->at_high.extinction == 0) return;
     const TcVec zero = tc_set(0), inside = piece->constant ? zero : low;
     tc_lights_add_part(lights, piece, thin, mask, tc_select(mask, length, zero), tc_select(mask, s0, inside),
                        tc_select(mask, s1, inside));
     return;
   }
-  TcLights copy = *lights;
   const TcVec arguments[3] = {length, s0, s1};
-  tc_lights_split(&copy, pieces, thin, mask, &arguments[0], &arguments[1], &arguments[2]);
-  *lights = copy;
+  tc_lights_split(lights, pieces, thin, mask, &arguments[0], &arguments[1], &arguments[2]);
 }
 
 /* tc_light_opaque(): the lanes that are complete. */
