@@ -89,16 +89,25 @@ static int64_t merge_knots(const Knots *a, const Knots *b, double *merged) {
   return n;
 }
 
+static bool is_empty(const TcPiece *piece) { return piece->at_low.extinction == 0 && piece->at_high.extinction == 0; }
+
 /* What follows from the pieces as they are. */
 static void look_at_pieces(TetcastTransferFunction *transfer) {
   TcPieces *pieces = &transfer->pieces;
   memset(pieces->largest, 0, sizeof pieces->largest);
   pieces->narrow = false;
+  double above = (double)pieces->count + 1, below = -1;
+  for (int64_t i = pieces->count; i >= 0; --i) {
+    if (!is_empty(&transfer->piece[i])) above = (double)i;
+    transfer->piece[i].filled_above = above;
+  }
   for (int64_t i = 0; i <= pieces->count; ++i) {
     TcPiece *piece = &transfer->piece[i];
+    if (!is_empty(piece)) below = (double)i;
+    piece->filled_below = below;
     piece->inverse = piece->constant ? 0 : 1 / (piece->high - piece->low);
     if (!isfinite(piece->inverse)) pieces->narrow = true;
-    if (piece->at_low.extinction == 0 && piece->at_high.extinction == 0) continue;
+    if (is_empty(piece)) continue;
     for (int k = 0; k < 3; ++k) {
       pieces->largest[k] = fmax(pieces->largest[k], fmax(piece->at_low.color[k], piece->at_high.color[k]));
     }

@@ -17,6 +17,7 @@ typedef struct TcPiece {
   double low, high; /* scalars at its ends; the outermost pieces are constant and end at ∓infinity */
   TcOptics at_low, at_high;
   double inverse; /* 1 / (high − low); 0 for a constant piece */
+  double filled_above, filled_below; /* the nearest piece that has extinction, this one included; count + 1, −1: none */
   bool constant;
 } TcPiece;
 

@@ -63,25 +63,38 @@ typedef struct TcLanePieces {
   TcVec low, high, k0, color0[3], k1, color1[3], inverse, rest;
 } TcLanePieces;
 
-/* The first eight numbers of the pieces, or all. */
-TC_INLINE TcLanePieces tc_load_pieces(const TcPieces *pieces, TcLong at, const bool all) {
-  enum { WORDS = sizeof(TcPiece) / sizeof(double) };
-  _Static_assert(sizeof(TcPiece) == 12 * sizeof(double) && offsetof(TcPiece, inverse) == 10 * sizeof(double), "loaded as three records");
-  TcVec word[WORDS];
-  tc_load_records(&pieces->pieces->low, at * WORDS, all ? 3 : 2, word);
+TC_INLINE TcLanePieces tc_load_pieces(const TcPieces *pieces, TcVec at) {
+  enum { STRIDE = sizeof(TcPiece) / sizeof(double), WORDS = sizeof(TcLanePieces) / sizeof(TcVec) };
+  _Static_assert(STRIDE >= WORDS && offsetof(TcPiece, inverse) == offsetof(TcLanePieces, inverse) / TC_LANES, "loaded as records of four");
+  TcVec word[WORDS], whole;
+  tc_load_records(&pieces->pieces->low, tc_nearest(at * STRIDE, &whole), WORDS / 4, word);
   TcLanePieces piece;
   memcpy(&piece, word, sizeof piece);
   return piece;
 }
 
-/* tc_piece_above() */
-TC_INLINE TcLong tc_find_pieces(const TcPieces *pieces, TcVec s) {
-  TcLong at = {0};
-  for (int64_t i = 0; i < pieces->count; ++i) at = tc_select_long(tc_le(tc_set(pieces->knots[i]), s), at + 1, at);
+/* The pieces between which segments from `least` to `most` have extinction, and, from one of them, where `s` lies. Of many pieces, those
+ * far from that are not looked at. */
+TC_INLINE int64_t tc_find_pieces(const TcPieces *pieces, int64_t from, TcMask mask, TcVec least, TcVec most, double s, TcVec *first,
+                                 TcVec *last) {
+  const bool many = pieces->count > 32;
+  int64_t i = many ? from : 0;
+  while (i > 0 && tc_any(tc_and(mask, tc_lt(least, tc_set(pieces->knots[i - 1]))))) --i;
+  int64_t at = i;
+  *first = tc_set(pieces->pieces[i].filled_above);
+  *last = tc_set(pieces->pieces[i].filled_below);
+  for (; i < pieces->count; ++i) {
+    const TcVec knot = tc_set(pieces->knots[i]);
+    const TcMask reached = tc_le(knot, most);
+    if (many && !tc_any(tc_and(mask, reached))) break;
+    *first = tc_select(tc_le(knot, least), tc_set(pieces->pieces[i + 1].filled_above), *first);
+    *last = tc_select(reached, tc_set(pieces->pieces[i + 1].filled_below), *last);
+    at += pieces->knots[i] <= s;
+  }
   return at;
 }
 
-/* Parts of a segment, a lane each, none of them empty in the lanes of `here`, and of length 0 in the others. */
+/* Parts of a segment, a lane each; of length 0 in lanes not in `here`. */
 TC_INLINE void tc_lights_add_parts(TcLights *lights, const TcLanePieces *piece, double thin, TcMask here, TcVec length, TcVec s0, TcVec s1) {
   const TcVec zero = tc_set(0), one = tc_set(1);
   const TcMask constant = tc_eq(piece->inverse, zero);
@@ -101,36 +114,28 @@ TC_INLINE void tc_lights_add_parts(TcLights *lights, const TcLanePieces *piece, 
   lights->block_depth += depth;
 }
 
-/* Segments that lie in several pieces: lanes pass from piece to piece, each where it is. Lanes in empty pieces pass on first, so that
- * the others are evaluated together. */
+/* Segments that lie in several pieces: lanes pass from piece to piece, each where it is, from the first to the last that has any extinction.
+ * Where a segment begins or ends on a knot, the piece above may come in with a part of length 0. */
 static __attribute__((noinline)) void tc_lights_split(TcLights *lights, const TcPieces *pieces, double thin, TcMask mask,
                                                       const TcVec *whole_length, const TcVec *from, const TcVec *to) {
-  const TcVec zero = tc_set(0), length = *whole_length;
-  const TcVec s1 = tc_select(mask, *to, zero), whole = tc_abs(s1 - tc_select(mask, *from, zero));
-  TcVec s0 = tc_select(mask, *from, zero);
+  const TcVec zero = tc_set(0), one = tc_set(1), length = *whole_length;
+  const TcVec s0 = tc_select(mask, *from, zero), s1 = tc_select(mask, *to, zero), whole = tc_abs(s1 - s0);
   const TcMask rising = tc_le(s0, s1);
-  const TcLong none = {0}, step = tc_select_long(rising, none + 1, none - 1);
-  TcLong at = tc_find_pieces(pieces, s0);
-  TcMask pending = mask;
-  do {
-    TcLanePieces piece = tc_load_pieces(pieces, at, false);
-    const TcVec end = tc_select(rising, tc_min(s1, piece.high), tc_max(s1, piece.low));
-    /* A falling lane on a knot is above it, and passes on from there with a part of length 0. */
-    const TcMask last = tc_eq(end, s1), unmoved = tc_and_not(tc_eq(end, s0), last);
-    TcMask here = tc_and(pending, tc_or(tc_le(piece.k0 + piece.k1, zero), unmoved));
-    if (!tc_any(here)) {
-      here = pending;
-      const TcVec part = length * tc_select(tc_eq(whole, zero), tc_set(1), tc_abs(end - s0) / whole);
-      piece = tc_load_pieces(pieces, at, true);
-      tc_lights_add_parts(lights, &piece, thin, here, tc_select(here, part, zero), s0, end);
-    }
-    s0 = tc_select(here, end, s0);
-    at = tc_select_long(tc_and_not(here, last), at + step, at);
-    pending = tc_and_not(pending, tc_and(here, last));
-  } while (tc_any(pending));
-  int64_t pieces_at[TC_LANES];
-  memcpy(pieces_at, &at, sizeof at);
-  lights->piece = pieces_at[__builtin_ctz(tc_bits(mask))];
+  TcVec first, last;
+  const double s = s1[__builtin_ctz(tc_bits(mask))];
+  lights->piece = tc_find_pieces(pieces, lights->piece, mask, tc_min(s0, s1), tc_max(s0, s1), s, &first, &last);
+  TcMask pending = tc_and(mask, tc_le(first, last));
+  const TcVec end = tc_select(rising, last, first), step = tc_select(rising, one, -one);
+  TcVec at = tc_select(rising, first, last);
+  while (tc_any(pending)) {
+    at = tc_select(pending, at, zero);
+    const TcLanePieces piece = tc_load_pieces(pieces, at);
+    const TcVec near = tc_max(tc_min(s0, piece.high), piece.low), far = tc_max(tc_min(s1, piece.high), piece.low);
+    const TcVec part = length * tc_select(tc_eq(whole, zero), one, tc_abs(far - near) / whole);
+    tc_lights_add_parts(lights, &piece, thin, pending, tc_select(pending, part, zero), near, far);
+    pending = tc_and_not(pending, tc_eq(at, end));
+    at += step;
+  }
 }
 
 /* tc_light_add() in the lanes of `mask`. */
