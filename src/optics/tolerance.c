@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-/* Rounding, in units of 2^−53, relative to the ray's opacity times the largest colour: a segment's weights 36 (segment.h), its extinction,
- * length and colours, each from interpolation, 16; the product of transmittances and the sum of colours over a block of 64 segments
+/* Rounding, in units of 2^−53, relative to the ray's opacity times the largest colour: a segment's weights 72 (segment_simd.h; segment.h: 36), its
+ * extinction, length and colours, each from interpolation, 16; the product of transmittances and the sum of colours over a block of 64 segments
  * 4 · 64; sums over blocks, of which there are segments / 64, 2 each, and once more through the depth. */
 static double rounding(int64_t segments) { return (512 + (double)segments / 16) * 0x1p-53; }
 

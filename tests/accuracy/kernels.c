@@ -44,6 +44,27 @@ static TetcastVolume *random_volume(TetcastContext *context, Cube *cube, int i, 
   return volume;
 }
 
+/* Hundreds of knots, as colour maps have, many pieces without extinction. */
+static TetcastTransferFunction *dense_transfer(TetcastContext *context, uint64_t *seed) {
+  enum { KNOTS = 300 };
+  double color[KNOTS][4], extinction[KNOTS][2];
+  bool empty = false;
+  for (int i = 0; i < KNOTS; ++i) {
+    color[i][0] = (i + 0.9 * uniform(seed)) / KNOTS;
+    for (int k = 1; k < 4; ++k) color[i][k] = uniform(seed);
+    if (uniform(seed) < 0.2) empty = !empty;
+    extinction[i][0] = i % 3 ? color[i][0] : (i + 0.9 * uniform(seed)) / KNOTS;
+    extinction[i][1] = empty ? 0 : power(seed, -1, 3);
+  }
+  TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
+  desc.color = color[0];
+  desc.extinction = extinction[0];
+  desc.color_count = desc.extinction_count = KNOTS;
+  TetcastTransferFunction *transfer = NULL;
+  assert_int_equal(tetcast_transfer_function_create(context, &desc, &transfer), TETCAST_OK);
+  return transfer;
+}
+
 static TetcastCamera random_camera(int i, uint64_t *seed) {
   TetcastCamera camera = {.up = {0, 1, 0.1}, .fovy = i % 8 == 1 ? 130 : 35, .height = 1.5};
   for (int k = 0; k < 3; ++k) {
@@ -68,7 +89,7 @@ static void kernels_agree(void **state) {
   Cube cube = cube_create(6, 0.6);
   for (int i = 0; i < SCENES; ++i) {
     TetcastVolume *volume = random_volume(fixture.context, &cube, i, &seed);
-    TetcastTransferFunction *transfer = random_transfer(fixture.context, &seed);
+    TetcastTransferFunction *transfer = i % 7 == 5 ? dense_transfer(fixture.context, &seed) : random_transfer(fixture.context, &seed);
     const TetcastCamera camera = random_camera(i, &seed);
     int64_t count;
     const double *color = tetcast_transfer_function_color(transfer, &count);
