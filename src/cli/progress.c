@@ -2,23 +2,27 @@
 #include "progress.h"
 
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "cli.h"
 
-static volatile sig_atomic_t held, caught;
+static atomic_int held;
+static volatile sig_atomic_t caught;
 
-static void handle(int signal_number) {
-  if (held) {
-    caught = signal_number;
-    return;
-  }
+static void end(int signal_number) {
   static const char text[] = "tetcast: error: interrupted\n";
   const ssize_t ignored = write(STDERR_FILENO, text, sizeof text - 1);
   (void)ignored;
   _exit(128 + signal_number);
+}
+
+static void handle(int signal_number) {
+  if (atomic_load(&held) == 0)
+    end(signal_number);
+  caught = signal_number;
 }
 
 void cli_interrupt_catch(void) {
@@ -38,7 +42,10 @@ void cli_interrupt_catch(void) {
 }
 
 void cli_interrupt_hold(bool hold) {
-  held = hold;
+  if (hold)
+    atomic_fetch_add(&held, 1);
+  else if (atomic_fetch_sub(&held, 1) == 1 && caught)
+    end(caught);
 }
 
 int cli_interrupted(void) {
