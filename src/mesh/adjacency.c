@@ -6,7 +6,7 @@
  * Bytes per cell: the result 20, whose place the vertices of the mesh's cells have until they are sorted; records 8, sorted by way of
  * memory that is needed before or afterwards only; the sorted cells' vertices 16 and sources 4: 48 in all, of which 24 stay. The caller's
  * arrays come on top: 4 per vertex for the ranks, 20 or 36 for the volume's vertices, about 6 or 7 per cell. Only a vertex at which nearly
- * all cells meet needs more, up to 48. */
+ * all cells meet needs more, up to 144. */
 #include "mesh/adjacency.h"
 
 #include <stdlib.h>
