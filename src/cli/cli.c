@@ -5,7 +5,6 @@
 #include <getopt.h>
 #include <math.h>
 #include <stdarg.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +15,7 @@
 static struct {
   bool quiet;
   const char *place;
-  atomic_bool failed; /* an error has been shown */
+  bool failed; /* an error has been shown; guarded by the lock of stderr */
 } messages;
 
 void cli_set_quiet(bool quiet) {
@@ -44,8 +43,18 @@ static void show(const char *kind, const char *place, const char *text) {
 }
 
 static void show_error(const char *place, const char *text) {
-  if (!cli_interrupted() && !atomic_exchange(&messages.failed, true))
+  flockfile(stderr);
+  if (!cli_interrupted() && !messages.failed)
     show("error", place, text);
+  messages.failed = true;
+  funlockfile(stderr);
+}
+
+void cli_messages_hold(bool hold) {
+  if (hold)
+    flockfile(stderr);
+  else
+    funlockfile(stderr);
 }
 
 static void receive(void *user, TetcastSeverity severity, const char *text) {

@@ -24,6 +24,9 @@ void cli_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void cli_set_quiet(bool quiet);
 bool cli_quiet(void);
 
+/* While a thread holds them, the others wait with their messages. */
+void cli_messages_hold(bool hold);
+
 /* Puts "PLACE: " before the library's errors (NULL: nothing): for calls whose arguments came from a file. */
 void cli_set_place(const char *place);
 

@@ -89,8 +89,6 @@ static int perform(Converge *converge, Folder *folder) {
   cli_interrupt_hold(true); /* the check makes a folder for a moment */
   int code = check(converge, folder);
   cli_interrupt_hold(false);
-  if (cli_interrupted())
-    code = CLI_FAILED;
   if (code == CLI_DONE && converge->scene_studies) {
     code = stage_read(&converge->stage, &converge->options);
     if (code == CLI_DONE)

@@ -2,23 +2,30 @@
 #include "progress.h"
 
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "cli.h"
 
-static volatile sig_atomic_t held, caught;
+static atomic_int held, caught;
 
-static void handle(int signal_number) {
-  if (held) {
-    caught = signal_number;
+/* Once: a signal may come to one thread while another ends the process. */
+static void end(int signal_number) {
+  static atomic_flag ending = ATOMIC_FLAG_INIT;
+  if (atomic_flag_test_and_set(&ending))
     return;
-  }
   static const char text[] = "tetcast: error: interrupted\n";
   const ssize_t ignored = write(STDERR_FILENO, text, sizeof text - 1);
   (void)ignored;
   _exit(128 + signal_number);
+}
+
+static void handle(int signal_number) {
+  atomic_store(&caught, signal_number); /* before looking: another thread may be about to let go */
+  if (atomic_load(&held) == 0)
+    end(signal_number);
 }
 
 void cli_interrupt_catch(void) {
@@ -38,11 +45,14 @@ void cli_interrupt_catch(void) {
 }
 
 void cli_interrupt_hold(bool hold) {
-  held = hold;
+  if (hold)
+    atomic_fetch_add(&held, 1);
+  else if (atomic_fetch_sub(&held, 1) == 1 && atomic_load(&caught))
+    end(atomic_load(&caught));
 }
 
 int cli_interrupted(void) {
-  return caught;
+  return atomic_load(&caught);
 }
 
 enum { BAR_WIDTH = 40 };
@@ -65,7 +75,7 @@ bool cli_progress_show(double fraction) {
     bar.drawn = now;
     bar.visible = true;
   }
-  return caught == 0;
+  return atomic_load(&caught) == 0;
 }
 
 static bool advance(void *user, double fraction) {
@@ -81,7 +91,8 @@ TetcastProgress cli_progress(const char *label) {
 }
 
 void cli_progress_clear(void) {
-  if (bar.visible)
-    fputs("\r\033[K", stderr);
+  if (!bar.visible)
+    return;
+  fputs("\r\033[K", stderr);
   bar.visible = false;
 }

@@ -7,8 +7,9 @@
 
 #include <tetcast/context.h>
 
-/* Catches SIGINT, SIGTERM and SIGHUP. Until cli_interrupt_hold(true) they end the process at once; from then on they
- * are remembered, for cli_interrupted() and the progress callback, so that temporary files are removed first. */
+/* Catches SIGINT, SIGTERM and SIGHUP. They end the process at once, but between cli_interrupt_hold(true) and (false),
+ * in any thread, they are remembered, for cli_interrupted() and the progress callback, so that temporary files are
+ * removed first; the last (false) ends the process then. */
 void cli_interrupt_catch(void);
 void cli_interrupt_hold(bool hold);
 

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#include <pthread.h>
+#include <semaphore.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <tetcast/tetcast.h>
 
@@ -19,6 +22,9 @@ typedef struct Run {
   RenderOptions options;
   const CliImage *image;
   TetcastImageDesc image_desc;
+  pthread_t image_thread;
+  sem_t image_begun;
+  bool image_pending; /* image_thread still has to be waited for */
   Stage stage;
   TetcastFrame *frame;
   RunStats stats;
@@ -31,7 +37,7 @@ static char *default_output(const char *input) {
   return cli_print("%.*s.png", (int)(dot && dot != name ? (size_t)(dot - name) : strlen(name)), name);
 }
 
-/* All that can be known to fail before the mesh is read. */
+/* All that can be known to fail before the mesh is read and needs no image library. */
 static int check(Run *run) {
   RenderOptions *options = &run->options;
   if (!options->output)
@@ -44,14 +50,73 @@ static int check(Run *run) {
     return CLI_FAILED;
   if (options->source >> OPTION_BACKGROUND & 1 && render_options_floating(options)) /* on the command line, that is */
     cli_warning("--background has no effect: floating-point pixels hold the picture without background");
+  return CLI_DONE;
+}
+
+/* Whether the picture can be written where and as it is to be. */
+static int check_image(Run *run) {
   run->image = cli_image();
   if (!run->image)
     return CLI_FAILED;
   run->image_desc = run->image->image_desc_default();
-  run->image_desc.pixel_type = (TetcastPixelType)options->pixel_type;
-  memcpy(run->image_desc.background, options->background, sizeof options->background);
-  const TetcastStatus status = run->image->image_check(run->stage.context, options->output, &run->image_desc);
+  run->image_desc.pixel_type = (TetcastPixelType)run->options.pixel_type;
+  memcpy(run->image_desc.background, run->options.background, sizeof run->options.background);
+  cli_interrupt_hold(true); /* the check puts a file in a folder for a moment */
+  const TetcastStatus status = run->image->image_check(run->stage.context, run->options.output, &run->image_desc);
+  cli_interrupt_hold(false);
   return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
+}
+
+/* What the command ends with. */
+static int outcome(int code) {
+  if (!cli_interrupted())
+    return code;
+  fputs("tetcast: error: interrupted\n", stderr);
+  return 128 + cli_interrupted();
+}
+
+/* A picture that can't be written is told before anything that is found out about the mesh, and at once: reading, which
+ * may take long and can't be stopped, ends with the process. */
+static void *check_image_aside(void *argument) {
+  Run *run = argument;
+  cli_messages_hold(true);
+  sem_post(&run->image_begun);
+  const int code = check_image(run);
+  if (code != CLI_DONE)
+    _exit(outcome(code));
+  cli_messages_hold(false);
+  return NULL;
+}
+
+static void await_image(Run *run) {
+  if (run->image_pending)
+    pthread_join(run->image_thread, NULL);
+  run->image_pending = false;
+}
+
+/* Some files are tried in a child process first, which would keep for ever the locks of a thread that it doesn't have. */
+static Run *running;
+
+static void before_fork(void) {
+  if (running)
+    await_image(running);
+}
+
+/* Loading the image library takes about as long as reading a large mesh, and both are work for one processor: they are
+ * done at the same time. */
+static int begin_image(Run *run) {
+  if (!cli_vtk()) /* before the thread begins: only one library is loaded at a time */
+    return CLI_FAILED;
+  running = run;
+  if (pthread_atfork(before_fork, NULL, NULL) != 0)
+    return check_image(run);
+  sem_init(&run->image_begun, 0, 0);
+  if (pthread_create(&run->image_thread, NULL, check_image_aside, run) != 0)
+    return check_image(run);
+  run->image_pending = true;
+  while (sem_wait(&run->image_begun) != 0) /* a signal */
+    continue;
+  return CLI_DONE;
 }
 
 /* Reads the input and prepares the scene, after which nothing of the dataset stays in memory. */
@@ -105,6 +170,7 @@ static int render(Run *run) {
 
 static int write_files(Run *run) {
   const RenderOptions *options = &run->options;
+  await_image(run);
   const double start = cli_seconds();
   const TetcastStatus status =
       run->image->image_write(run->stage.context, options->output, run->frame, &run->image_desc);
@@ -126,8 +192,8 @@ static int perform(Run *run) {
   cli_interrupt_hold(true); /* checks put files in folders for a moment */
   int code = check(run);
   cli_interrupt_hold(false);
-  if (cli_interrupted())
-    code = CLI_FAILED;
+  if (code == CLI_DONE)
+    code = begin_image(run);
   if (code == CLI_DONE)
     code = load(run);
   if (code == CLI_DONE)
@@ -146,13 +212,11 @@ int tetcast_cli_render(int argc, char **argv) {
     cli_set_quiet(run.options.quiet);
     code = perform(&run);
   }
+  await_image(&run);
+  running = NULL;
   tetcast_frame_destroy(&run.frame);
   stage_release(&run.stage);
   free(run.stats.render_seconds);
   render_options_release(&run.options);
-  if (cli_interrupted()) {
-    fputs("tetcast: error: interrupted\n", stderr);
-    return 128 + cli_interrupted();
-  }
-  return code;
+  return outcome(code);
 }

@@ -3,10 +3,10 @@
  * are at hand in two places, and are brought together vertex by vertex in a table that fits the innermost cache. With vertices
  * numbered along a curve through space, that order of the cells follows the curve, too.
  *
- * Bytes per cell: the result 20, whose place the vertices of the mesh's cells have until they are sorted; records 8 and the space to
- * sort them 8; the sorted cells' vertices 16 and sources 4: 56 in all, of which 24 stay. The caller's arrays come on top: 4 per vertex for
- * the ranks, 20 or 36 for the volume's vertices, about 6 or 7 per cell. Only a vertex at which nearly all cells meet needs more, up
- * to 48. */
+ * Bytes per cell: the result 20, whose place the vertices of the mesh's cells have until they are sorted; records 8, sorted by way of
+ * memory that is needed before or afterwards only; the sorted cells' vertices 16 and sources 4: 48 in all, of which 24 stay. The caller's
+ * arrays come on top: 4 per vertex for the ranks, 20 or 36 for the volume's vertices, about 6 or 7 per cell. Only a vertex at which nearly
+ * all cells meet needs more, up to 144. */
 #include "mesh/adjacency.h"
 
 #include <stdlib.h>
@@ -16,7 +16,7 @@
 #include "mesh/order.h"
 #include "mesh/stage.h"
 
-enum { GRAIN = 1 << 14, VERTEX_GRAIN = 1 << 11, AHEAD = 32 };
+enum { GRAIN = 1 << 14, VERTEX_GRAIN = 1 << 11, AHEAD = 32, SMALL_BITS = 10 };
 
 /* While faces are linked: a face that has been seen in one cell so far, and one of three cells or more. */
 #define FACE_OF_ONE TC_SHELL
@@ -29,8 +29,8 @@ typedef struct Build {
   TcAdjacency *result;
   int64_t mesh_cell_count, cell_count, vertex_count;
   uint32_t (*unsorted)[4];     /* [mesh_cell_count]: the vertices of each of the mesh's cells, ascending; where `cells` will be */
-  uint64_t *records, *scratch; /* [mesh_cell_count]: keys are vertices, values are cells */
-  uint32_t (*vertices)[4];     /* [cell_count]: of each cell, ascending; cells in ascending order */
+  uint64_t *records;           /* [mesh_cell_count]: keys are vertices, values are cells */
+  uint32_t (*vertices)[4];     /* [cell_count], room for mesh_cell_count: of each cell, ascending; cells in ascending order */
   uint32_t *source;
   TcCell *cells;
   int64_t *shell_begin;        /* [pieces of GRAIN cells]: the first shell face */
@@ -60,17 +60,14 @@ static bool read_cells(void *data, int64_t begin, int64_t end, int worker) {
   return true;
 }
 
+/* A cell whose smallest vertex is known: the others and where it comes from, in the order of their weight. */
 typedef struct Entry {
-  uint32_t v[4], source;
+  uint64_t high, low;
 } Entry;
 
-static int compare_entries(const void *left, const void *right) {
-  const Entry *a = left, *b = right;
-  for (int k = 1; k < 4; ++k) {
-    if (a->v[k] != b->v[k]) return a->v[k] < b->v[k] ? -1 : 1;
-  }
-  return a->source < b->source ? -1 : a->source > b->source;
-}
+static bool is_less(const Entry *a, const Entry *b) { return a->high != b->high ? a->high < b->high : a->low < b->low; }
+
+static int compare_entries(const void *a, const void *b) { return is_less(b, a) - is_less(a, b); }
 
 static void sort_entries(Entry *entries, int64_t count) {
   if (count > 48) {
@@ -80,7 +77,7 @@ static void sort_entries(Entry *entries, int64_t count) {
   for (int64_t i = 1; i < count; ++i) {
     const Entry entry = entries[i];
     int64_t j = i;
-    for (; j > 0 && compare_entries(&entry, &entries[j - 1]) < 0; --j) entries[j] = entries[j - 1];
+    for (; j > 0 && is_less(&entry, &entries[j - 1]); --j) entries[j] = entries[j - 1];
     entries[j] = entry;
   }
 }
@@ -95,15 +92,18 @@ static bool take_run(Build *build, int64_t begin, int64_t end) {
     if (!entries) return false;
   }
   for (int64_t i = 0; i < count; ++i) {
-    entries[i].source = tc_record_value(build->records[begin + i]);
-    memcpy(entries[i].v, build->unsorted[entries[i].source], sizeof entries[i].v);
+    const uint32_t source = tc_record_value(build->records[begin + i]), *v = build->unsorted[source];
+    entries[i] = (Entry){(uint64_t)v[1] << 32 | v[2], (uint64_t)v[3] << 32 | source};
   }
   sort_entries(entries, count);
   int64_t duplicates = 0;
   for (int64_t i = 0; i < count; ++i) {
-    memcpy(build->vertices[begin + i], entries[i].v, sizeof entries[i].v);
-    build->source[begin + i] = entries[i].source;
-    duplicates += i > 0 && memcmp(entries[i].v, entries[i - 1].v, sizeof entries[i].v) == 0;
+    const Entry *entry = &entries[i];
+    const uint32_t v[4] = {tc_record_key(build->records[begin]), (uint32_t)(entry->high >> 32), (uint32_t)entry->high,
+                           (uint32_t)(entry->low >> 32)};
+    memcpy(build->vertices[begin + i], v, sizeof v);
+    build->source[begin + i] = (uint32_t)entry->low;
+    duplicates += i > 0 && entry->high == entry[-1].high && entry->low >> 32 == entry[-1].low >> 32;
   }
   if (duplicates) atomic_fetch_add(&build->duplicates, duplicates);
   if (entries != small) tc_release(build->context, entries);
@@ -145,14 +145,21 @@ static void drop_duplicates(Build *build) {
 
 /* ── faces ── */
 
-/* No face joined to another yet; records by second vertex. */
+/* Records by second vertex. */
+static bool take_seconds(void *data, int64_t begin, int64_t end, int worker) {
+  (void)worker;
+  Build *build = data;
+  for (int64_t i = begin; i < end; ++i) build->records[i] = tc_record(build->vertices[i][1], (uint32_t)i);
+  return true;
+}
+
+/* No face joined to another yet. */
 static bool begin_cells(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   Build *build = data;
   for (int64_t i = begin; i < end; ++i) {
     const uint32_t *v = build->vertices[i];
     build->cells[i] = (TcCell){v[0] ^ v[1] ^ v[2] ^ v[3], {FACE_OF_ONE, FACE_OF_ONE, FACE_OF_ONE, FACE_OF_ONE}};
-    build->records[i] = tc_record(v[1], (uint32_t)i);
   }
   return true;
 }
@@ -186,35 +193,66 @@ static void join(Build *build, uint64_t first, uint64_t number) {
   *neighbor_of(build, number) = FACE_OF_MANY;
 }
 
+/* Faces with one smallest vertex, by a hash of their keys. */
+typedef struct Table {
+  struct {
+    uint64_t key, number;
+  } *entries;
+  uint64_t *slots; /* [2^bits]: stamp << 32 | entry; with another stamp it is empty, which spares clearing them for each vertex */
+  uint32_t stamp, count;
+  int bits;
+} Table;
+
+static inline void put_face(Build *build, Table *table, uint32_t b, uint32_t c, uint64_t number) {
+  const uint64_t key = (uint64_t)b << 32 | c, mask = (UINT64_C(1) << table->bits) - 1;
+  uint64_t slot = key * UINT64_C(0x9e3779b97f4a7c15) >> (64 - table->bits);
+  for (; table->slots[slot] >> 32 == table->stamp; slot = (slot + 1) & mask) {
+    const uint32_t i = (uint32_t)table->slots[slot];
+    if (table->entries[i].key != key) continue;
+    join(build, table->entries[i].number, number);
+    return;
+  }
+  table->slots[slot] = (uint64_t)table->stamp << 32 | table->count;
+  table->entries[table->count].key = key;
+  table->entries[table->count++].number = number;
+}
+
 /* One vertex's faces: those of cells [begin, end) but the first of each, and the first of the cells in records [second, second_end). */
-static bool link_vertex(Build *build, int64_t begin, int64_t end, int64_t second, int64_t second_end) {
-  enum { SMALL = 512 };
-  uint64_t small[SMALL], *table = small; /* face number + 1, by a hash of the key */
-  int bits = 4;
-  while (INT64_C(1) << bits <= 3 * (end - begin) + (second_end - second)) ++bits;
-  if (bits < 8) ++bits; /* less to search */
-  const uint64_t size = UINT64_C(1) << bits;
-  if (size > SMALL) {
-    table = tc_allocate(build->context, (int64_t)size, sizeof *table);
-    if (!table) return false;
+static void put_faces(Build *build, Table *shared, int64_t begin, int64_t end, int64_t second, int64_t second_end) {
+  Table table = *shared; /* which may stay in registers */
+  ++table.stamp;
+  for (int64_t i = begin; i < end; ++i) {
+    const uint32_t *v = build->vertices[i];
+    put_face(build, &table, v[2], v[3], (uint64_t)i * 4 + 1);
+    put_face(build, &table, v[1], v[3], (uint64_t)i * 4 + 2);
+    put_face(build, &table, v[1], v[2], (uint64_t)i * 4 + 3);
   }
-  memset(table, 0, size * sizeof *table);
-  for (int64_t i = begin, k = 1; i < end || second < second_end;) {
-    uint64_t number;
-    if (i < end) {
-      number = (uint64_t)i * 4 + (uint64_t)k;
-      if (++k == 4) ++i, k = 1;
-    } else {
-      number = (uint64_t)tc_record_value(build->records[second++]) * 4;
-    }
-    const uint64_t key = face_key(build, number);
-    uint64_t slot = key * UINT64_C(0x9e3779b97f4a7c15) >> (64 - bits);
-    while (table[slot] && face_key(build, table[slot] - 1) != key) slot = (slot + 1) & (size - 1);
-    if (table[slot]) join(build, table[slot] - 1, number);
-    else table[slot] = number + 1;
+  for (int64_t j = second; j < second_end; ++j) {
+    const uint32_t i = tc_record_value(build->records[j]), *v = build->vertices[i];
+    put_face(build, &table, v[2], v[3], (uint64_t)i * 4);
   }
-  if (table != small) tc_release(build->context, table);
-  return true;
+  shared->stamp = table.stamp;
+}
+
+static bool link_vertex(Build *build, Table *small, int64_t begin, int64_t end, int64_t second, int64_t second_end) {
+  const int64_t count = 3 * (end - begin) + (second_end - second);
+  int bits = 5;
+  while (INT64_C(1) << bits < 2 * count) ++bits;
+  if (bits <= SMALL_BITS) {
+    small->bits = bits;
+    put_faces(build, small, begin, end, second, second_end);
+    return true;
+  }
+  Table table = {.slots = tc_allocate(build->context, INT64_C(1) << bits, sizeof *table.slots),
+                 .entries = tc_allocate(build->context, count, sizeof *table.entries), .bits = bits};
+  const bool ok = table.slots && table.entries;
+  if (ok) {
+    memset(table.slots, 0, sizeof *table.slots << bits);
+    put_faces(build, &table, begin, end, second, second_end);
+  }
+  tc_release(build->context, table.slots);
+  tc_release(build->context, table.entries);
+  return ok;
 }
 
 /* The first cell whose smallest vertex is ≥ vertex. */
@@ -233,11 +271,13 @@ static bool link_cells(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   Build *build = data;
   int64_t cell = find_cell(build, (uint32_t)begin), record = tc_find_record(build->records, build->cell_count, (uint32_t)begin);
+  uint64_t slots[1 << SMALL_BITS] = {0}, entries[1 << SMALL_BITS]; /* half as many of two words each */
+  Table small = {.slots = slots, .entries = (void *)entries};
   for (uint32_t vertex = (uint32_t)begin; vertex < (uint32_t)end; ++vertex) {
     const int64_t first_cell = cell, first_record = record;
     while (cell < build->cell_count && build->vertices[cell][0] == vertex) ++cell;
     while (record < build->cell_count && tc_record_key(build->records[record]) == vertex) ++record;
-    if (!link_vertex(build, first_cell, cell, first_record, record)) {
+    if (!link_vertex(build, &small, first_cell, cell, first_record, record)) {
       atomic_store(&build->out_of_memory, true);
       return false;
     }
@@ -314,22 +354,29 @@ static TetcastStatus stopped(const Build *build, TetcastStatus status) {
   return tc_error(build->context, TETCAST_ERROR_MEMORY, "out of memory: adjacency of %lld cells", (long long)build->mesh_cell_count);
 }
 
+/* `scratch` is memory for as much again that nothing is in. */
+static TetcastStatus sort_records(Build *build, int64_t count, void *scratch) {
+  uint64_t *sorted = build->records, *other = scratch;
+  const TetcastStatus status = tc_sort_records(build->context, &sorted, &other, count, (uint32_t)build->vertex_count);
+  if (sorted != build->records) memcpy(build->records, sorted, (size_t)count * sizeof *sorted);
+  return status;
+}
+
 static TetcastStatus sort_cells(Build *build, const TetcastProgress *progress) {
   TetcastContext *context = build->context;
   const int64_t all = build->mesh_cell_count;
   if (!tc_allocate_array(context, (void **)&build->cells, all + 1, sizeof *build->cells, "cells") ||
       !tc_allocate_array(context, (void **)&build->records, all, sizeof *build->records, "cells") ||
-      !tc_allocate_array(context, (void **)&build->scratch, all, sizeof *build->scratch, "cells")) {
+      !tc_allocate_array(context, (void **)&build->vertices, all, sizeof *build->vertices, "cells")) {
     return TETCAST_ERROR_MEMORY;
   }
   build->unsorted = (uint32_t(*)[4])(void *)build->cells;
   TcStage stage;
   TetcastStatus status = tc_parallel_for(context, all, GRAIN, read_cells, build, tc_stage(&stage, progress, 0, 0.2));
-  if (!status) status = tc_sort_records(context, &build->records, &build->scratch, all, (uint32_t)build->vertex_count);
+  if (!status) status = sort_records(build, all, build->vertices);
   if (status) return status;
   build->cell_count = all - atomic_load(&build->collapsed);
-  if (!tc_allocate_array(context, (void **)&build->vertices, build->cell_count, sizeof *build->vertices, "cells") ||
-      !tc_allocate_array(context, (void **)&build->source, build->cell_count, sizeof *build->source, "cells")) {
+  if (!tc_allocate_array(context, (void **)&build->source, build->cell_count, sizeof *build->source, "cells")) {
     return TETCAST_ERROR_MEMORY;
   }
   status = tc_parallel_for(context, build->cell_count, GRAIN, take_cells, build, tc_stage(&stage, progress, 0.2, 0.5));
@@ -344,14 +391,10 @@ static TetcastStatus sort_cells(Build *build, const TetcastProgress *progress) {
 static TetcastStatus link(Build *build, const TetcastProgress *progress) {
   TetcastContext *context = build->context;
   TcStage stage;
-  TetcastStatus status =
-    tc_parallel_for(context, build->cell_count, GRAIN, begin_cells, build, tc_stage(&stage, progress, 0.5, 0.6));
-  if (!status) {
-    status = tc_sort_records(context, &build->records, &build->scratch, build->cell_count, (uint32_t)build->vertex_count);
-  }
+  tc_parallel_for(context, build->cell_count, GRAIN, take_seconds, build, NULL);
+  TetcastStatus status = sort_records(build, build->cell_count, build->cells);
+  if (!status) status = tc_parallel_for(context, build->cell_count, GRAIN, begin_cells, build, tc_stage(&stage, progress, 0.5, 0.6));
   if (status) return status;
-  tc_release(context, build->scratch);
-  build->scratch = NULL;
   status = tc_parallel_for(context, build->vertex_count, VERTEX_GRAIN, link_cells, build, tc_stage(&stage, progress, 0.6, 0.9));
   if (status) return stopped(build, status);
   tc_release(context, build->records);
@@ -381,7 +424,6 @@ TetcastStatus tc_adjacency_build(const TetcastMesh *mesh, const uint32_t *rank, 
   if (keep_vertices) result->vertices = build.vertices;
   else tc_release(build.context, build.vertices);
   tc_release(build.context, build.records);
-  tc_release(build.context, build.scratch);
   tc_release(build.context, build.shell_begin);
   if (status) tc_adjacency_clear(result);
   return status;

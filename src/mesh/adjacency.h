@@ -35,7 +35,7 @@ typedef struct TcAdjacency {
 
 /* Which cells meet at which faces. Vertex v of the mesh is rank[v] in the result (NULL: the same), and cells are in ascending order of
  * their ascending vertices: neighbours in memory are neighbours in space when vertices are. Working memory adjacency.c derives: at most
- * 56 bytes per cell, result included. The result does not depend on the number of threads. Cleared on error. */
+ * 48 bytes per cell, result included. The result does not depend on the number of threads. Cleared on error. */
 TetcastStatus tc_adjacency_build(const TetcastMesh *mesh, const uint32_t *rank, bool keep_vertices, const TetcastProgress *progress,
                                  TcAdjacency *adjacency);
 /* Frees cells and shell, leaving the vertices. */

@@ -13,41 +13,40 @@ typedef struct Build {
   const TcAdjacency *adjacency;
   const uint32_t (*vertices)[4];
   TcClusters *clusters;
+  uint64_t *found; /* [clusters]: seeds_of() each */
 } Build;
 
-/* The cells of cluster c that faces within it connect with `first`, as bits. */
-static uint64_t connected(const TcAdjacency *adjacency, int64_t c, int first) {
-  uint64_t found = UINT64_C(1) << first, open = found;
-  while (open) {
-    const int i = __builtin_ctzll(open);
-    open &= open - 1;
-    const TcCell *cell = &adjacency->cells[(c << TC_CLUSTER_BITS) + i];
-    for (int k = 0; k < 4; ++k) {
-      if (cell->neighbor[k] & TC_SHELL || cell->neighbor[k] >> TC_CLUSTER_BITS != (uint64_t)c) continue;
-      const uint64_t bit = UINT64_C(1) << (cell->neighbor[k] & (TC_CLUSTER - 1));
-      open |= bit & ~found;
-      found |= bit;
-    }
-  }
-  return found;
+/* The cells of cluster c that share a face with its cell i, as bits. */
+static uint64_t neighbors_of(const TcAdjacency *adjacency, int64_t c, int i) {
+  const uint32_t *neighbor = adjacency->cells[(c << TC_CLUSTER_BITS) + i].neighbor;
+  uint64_t bits = 0;
+  for (int k = 0; k < 4; ++k) bits |= (uint64_t)(neighbor[k] >> TC_CLUSTER_BITS == (uint64_t)c) << (neighbor[k] & (TC_CLUSTER - 1));
+  return bits;
 }
 
-/* The cells of cluster c that become seeds, as bits. */
+/* The cells of cluster c that become seeds, as bits: the first of each part that faces connect. */
 static uint64_t seeds_of(const TcAdjacency *adjacency, int64_t c) {
   const int count = tc_cluster_size(adjacency, c);
   uint64_t left = count < 64 ? (UINT64_C(1) << count) - 1 : UINT64_MAX, seeds = 0;
   while (left) {
-    const int first = __builtin_ctzll(left);
-    seeds |= UINT64_C(1) << first;
-    left &= ~connected(adjacency, c, first);
+    uint64_t open = left & -left;
+    seeds |= open;
+    while (open) {
+      left &= ~open;
+      const int i = __builtin_ctzll(open);
+      open = (open & (open - 1)) | (neighbors_of(adjacency, c, i) & left);
+    }
   }
   return seeds;
 }
 
-static bool count_seeds(void *data, int64_t begin, int64_t end, int worker) {
+static bool find_seeds(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   const Build *build = data;
-  for (int64_t c = begin; c < end; ++c) build->clusters->begin[c + 1] = (uint32_t)__builtin_popcountll(seeds_of(build->adjacency, c));
+  for (int64_t c = begin; c < end; ++c) {
+    build->found[c] = seeds_of(build->adjacency, c);
+    build->clusters->begin[c + 1] = (uint32_t)__builtin_popcountll(build->found[c]);
+  }
   return true;
 }
 
@@ -56,7 +55,7 @@ static bool take_seeds(void *data, int64_t begin, int64_t end, int worker) {
   const Build *build = data;
   for (int64_t c = begin; c < end; ++c) {
     uint32_t seed = build->clusters->begin[c];
-    for (uint64_t bits = seeds_of(build->adjacency, c); bits; bits &= bits - 1, ++seed) {
+    for (uint64_t bits = build->found[c]; bits; bits &= bits - 1, ++seed) {
       const int place = __builtin_ctzll(bits);
       build->clusters->places[seed] = (uint8_t)place;
       memcpy(build->clusters->seeds[seed], build->vertices[(c << TC_CLUSTER_BITS) + place], sizeof *build->clusters->seeds);
@@ -65,28 +64,34 @@ static bool take_seeds(void *data, int64_t begin, int64_t end, int worker) {
   return true;
 }
 
-TetcastStatus tc_clusters_build(TetcastContext *context, const TcAdjacency *adjacency, const uint32_t (*vertices)[4],
-                                TcClusters *clusters) {
-  memset(clusters, 0, sizeof *clusters);
-  clusters->context = context;
-  clusters->count = (adjacency->cell_count + TC_CLUSTER - 1) >> TC_CLUSTER_BITS;
-  Build build = {adjacency, vertices, clusters};
+static TetcastStatus build_clusters(Build *build) {
+  TcClusters *clusters = build->clusters;
+  TetcastContext *context = clusters->context;
   if (!tc_allocate_array(context, (void **)&clusters->begin, clusters->count + 1, sizeof *clusters->begin, "clusters") ||
-      !tc_allocate_array(context, (void **)&clusters->range, clusters->count, sizeof *clusters->range, "clusters")) {
-    tc_clusters_clear(clusters);
+      !tc_allocate_array(context, (void **)&clusters->range, clusters->count, sizeof *clusters->range, "clusters") ||
+      !tc_allocate_array(context, (void **)&build->found, clusters->count, sizeof *build->found, "clusters")) {
     return TETCAST_ERROR_MEMORY;
   }
   clusters->begin[0] = 0;
-  tc_parallel_for(context, clusters->count, GRAIN, count_seeds, &build, NULL);
+  tc_parallel_for(context, clusters->count, GRAIN, find_seeds, build, NULL);
   for (int64_t c = 0; c < clusters->count; ++c) clusters->begin[c + 1] += clusters->begin[c];
   const int64_t seeds = clusters->begin[clusters->count];
   if (!tc_allocate_array(context, (void **)&clusters->seeds, seeds, sizeof *clusters->seeds, "clusters") ||
       !tc_allocate_array(context, (void **)&clusters->places, seeds, sizeof *clusters->places, "clusters")) {
-    tc_clusters_clear(clusters);
     return TETCAST_ERROR_MEMORY;
   }
-  tc_parallel_for(context, clusters->count, GRAIN, take_seeds, &build, NULL);
+  tc_parallel_for(context, clusters->count, GRAIN, take_seeds, build, NULL);
   return TETCAST_OK;
+}
+
+TetcastStatus tc_clusters_build(TetcastContext *context, const TcAdjacency *adjacency, const uint32_t (*vertices)[4],
+                                TcClusters *clusters) {
+  *clusters = (TcClusters){.context = context, .count = (adjacency->cell_count + TC_CLUSTER - 1) >> TC_CLUSTER_BITS};
+  Build build = {.adjacency = adjacency, .vertices = vertices, .clusters = clusters};
+  const TetcastStatus status = build_clusters(&build);
+  tc_release(context, build.found);
+  if (status) tc_clusters_clear(clusters);
+  return status;
 }
 
 void tc_clusters_clear(TcClusters *clusters) {
@@ -104,41 +109,40 @@ size_t tc_clusters_bytes(const TcClusters *clusters) {
   return (count + 1) * sizeof *clusters->begin + count * sizeof *clusters->range + clusters->begin[count] * (sizeof *clusters->seeds + 1);
 }
 
-/* The neighbour across the face opposite vertex k of a cell: three of its vertices are the same. */
+/* The neighbour across the face opposite vertex k of a cell: three of its vertices are the same, the last goes where it belongs. */
 static void vertices_across(const uint32_t v[4], int k, uint32_t vertex_xor, uint32_t across[4]) {
+  static const unsigned char others[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
   uint32_t last = vertex_xor;
-  int n = 0;
-  for (int j = 0; j < 4; ++j) {
-    if (j == k) continue;
-    last ^= v[j];
-    across[n++] = v[j];
+  for (int j = 0; j < 3; ++j) last ^= v[others[k][j]];
+  for (int j = 0; j < 3; ++j) {
+    const uint32_t shared = v[others[k][j]], less = last < shared ? last : shared;
+    last = last < shared ? shared : last;
+    across[j] = less;
   }
-  for (; n > 0 && across[n - 1] > last; --n) across[n] = across[n - 1];
-  across[n] = last;
+  across[3] = last;
 }
 
 int tc_cluster_cells(const TcClusters *clusters, const TcAdjacency *adjacency, int64_t c, uint32_t vertices[TC_CLUSTER][4]) {
-  uint64_t found = 0, open = 0;
+  const TcCell *cells = adjacency->cells + (c << TC_CLUSTER_BITS);
+  uint64_t open = 0;
   for (uint32_t i = clusters->begin[c]; i < clusters->begin[c + 1]; ++i) {
     const int at = clusters->places[i];
     const uint32_t *seed = clusters->seeds[i];
     memcpy(vertices[at], seed, sizeof *clusters->seeds);
-    vertices[at][3] = adjacency->cells[(c << TC_CLUSTER_BITS) + at].vertex_xor ^ seed[0] ^ seed[1] ^ seed[2];
+    vertices[at][3] = cells[at].vertex_xor ^ seed[0] ^ seed[1] ^ seed[2];
     open |= UINT64_C(1) << at;
   }
-  found = open;
+  uint64_t left = ~open;
   while (open) {
     const int i = __builtin_ctzll(open);
-    open &= open - 1;
-    const TcCell *cell = &adjacency->cells[(c << TC_CLUSTER_BITS) + i];
-    for (int k = 0; k < 4; ++k) {
-      const uint32_t next = cell->neighbor[k];
-      if (next & TC_SHELL || next >> TC_CLUSTER_BITS != (uint64_t)c) continue;
-      const uint64_t bit = UINT64_C(1) << (next & (TC_CLUSTER - 1));
-      if (found & bit) continue;
-      vertices_across(vertices[i], k, adjacency->cells[next].vertex_xor, vertices[next & (TC_CLUSTER - 1)]);
-      open |= bit;
-      found |= bit;
+    uint64_t fresh = neighbors_of(adjacency, c, i) & left;
+    left &= ~fresh;
+    open = (open & (open - 1)) | fresh;
+    for (; fresh; fresh &= fresh - 1) {
+      const int j = __builtin_ctzll(fresh);
+      const uint32_t *neighbor = cells[i].neighbor, next = (uint32_t)(c << TC_CLUSTER_BITS) + (uint32_t)j;
+      const int k = (neighbor[1] == next) + 2 * (neighbor[2] == next) + 3 * (neighbor[3] == next);
+      vertices_across(vertices[i], k, cells[j].vertex_xor, vertices[j]);
     }
   }
   return tc_cluster_size(adjacency, c);

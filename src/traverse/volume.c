@@ -12,7 +12,7 @@
 #include "traverse/rayspace.h"
 
 /* Resident: 25 bytes per cell (20, its source, and its share of a cluster), 20 or 36 per vertex (the record and its source), 16 per shell face and what Embree
- * takes. While preparing, 56 per cell and 4 per vertex more at most (adjacency.c); Embree begins when that is given back. */
+ * takes. While preparing, 48 per cell and 4 per vertex more at most (adjacency.c); Embree begins when that is given back. */
 
 enum { GRAIN = 1 << 14, AHEAD = 32 };
 

@@ -112,4 +112,8 @@ refuse 1 'type double' render missing.vtu -o out.exr --pixel-type double
 refuse 1 'folder does not exist' render missing.vtu -o out.png --stats no/stats.json
 refuse 1 'folder does not exist' render missing.vtu -o out.png --save-scene no/scene.json
 refuse 1 'irectory' render missing.vtu -o out.png --stats folder.vtu
+
+# What is found out about the mesh meanwhile is not told before.
+scalar='0 1 nan 2 3 4 6 5' vtu warning.vtu "$five_tetrahedra" 10
+for file in missing text warning; do refuse 1 'folder does not exist' render $file.vtu -o no/out.png; done
 finish
