@@ -52,7 +52,6 @@ TC_INLINE TcVec tc_select(TcMask m, TcVec a, TcVec b) {
   return result;
 }
 TC_INLINE TcWord tc_select_word(TcMask m, TcWord a, TcWord b) { return (TcWord)_mm256_mask_blend_epi32(m, (__m256i)b, (__m256i)a); }
-TC_INLINE TcMask tc_gt_word(TcWord a, TcWord b) { return _mm256_cmpgt_epu32_mask((__m256i)a, (__m256i)b); }
 
 #elif defined(TC_SIMD_AVX2)
 
@@ -76,10 +75,6 @@ TC_INLINE __m128 tc_narrow_mask(TcMask m) { /* a 32-bit element a lane */
 TC_INLINE TcWord tc_select_word(TcMask m, TcWord a, TcWord b) {
   return (TcWord)_mm_blendv_ps((__m128)b, (__m128)a, tc_narrow_mask(m));
 }
-TC_INLINE TcMask tc_gt_word(TcWord a, TcWord b) {
-  const TcWord sign = tc_set_word(UINT32_C(1) << 31);
-  return (TcMask)_mm256_cvtepi32_epi64(_mm_cmpgt_epi32((__m128i)(a ^ sign), (__m128i)(b ^ sign)));
-}
 
 #else
 
@@ -99,10 +94,6 @@ TC_INLINE TcVec tc_select(TcMask m, TcVec a, TcVec b) { return (TcVec)((m & (TcL
 TC_INLINE TcWord tc_select_word(TcMask m, TcWord a, TcWord b) {
   const TcWord n = __builtin_convertvector(m, TcWord);
   return (n & a) | (~n & b);
-}
-TC_INLINE TcMask tc_gt_word(TcWord a, TcWord b) {
-  typedef int32_t Int __attribute__((vector_size(4 * TC_LANES)));
-  return __builtin_convertvector((Int)(a > b), TcLong);
 }
 
 #endif
@@ -124,16 +115,20 @@ TC_INLINE TcVec tc_madd(TcVec a, TcVec b, TcVec c) {
 #endif
 }
 
-/* a b − p, exactly, where p is a b rounded. */
-TC_INLINE TcVec tc_product_rest(TcVec a, TcVec b, TcVec p) {
+/* tc_product_error() */
+TC_INLINE TcVec tc_product_errors(TcVec a, TcVec b, TcVec p) {
 #if defined(TC_SIMD_AVX512)
   return (TcVec)_mm512_fmsub_pd((__m512d)a, (__m512d)b, (__m512d)p);
 #elif defined(TC_SIMD_AVX2)
   return (TcVec)_mm256_fmsub_pd((__m256d)a, (__m256d)b, (__m256d)p);
+#elif defined(FP_FAST_FMA)
+  TcVec error;
+  for (int i = 0; i < TC_LANES; ++i) error[i] = fma(a[i], b[i], -p[i]);
+  return error;
 #else
-  TcVec rest;
-  for (int i = 0; i < TC_LANES; ++i) rest[i] = fma(a[i], b[i], -p[i]);
-  return rest;
+  const TcVec c = 0x1.0000002p27 * a, d = 0x1.0000002p27 * b;
+  const TcVec a_high = c - (c - a), a_low = a - a_high, b_high = d - (d - b), b_low = b - b_high;
+  return ((a_high * b_high - p) + a_high * b_low + a_low * b_high) + a_low * b_low;
 #endif
 }
 
@@ -165,34 +160,91 @@ TC_INLINE TcVec tc_power_of_two(TcLong n) { return (TcVec)((n + 1023) << 52); }
 
 TC_INLINE TcLong tc_to_long(TcVec a) { return __builtin_convertvector(a, TcLong); }
 
+/* −1 where a > b, both less than 2³¹, else 0. */
+TC_INLINE TcWord tc_above(TcWord a, TcWord b) {
+#if defined(TC_SIMD_AVX512)
+  return (TcWord)_mm256_cmpgt_epi32((__m256i)a, (__m256i)b);
+#elif defined(TC_SIMD_AVX2)
+  return (TcWord)_mm_cmpgt_epi32((__m128i)a, (__m128i)b);
+#else
+  typedef int32_t Int __attribute__((vector_size(4 * TC_LANES)));
+  return (TcWord)((Int)a > (Int)b);
+#endif
+}
+
+/* The lanes whose highest bit is set. */
+TC_INLINE TcMask tc_high_bit(TcWord a) {
+#if defined(TC_SIMD_AVX512)
+  return _mm256_movepi32_mask((__m256i)a);
+#elif defined(TC_SIMD_AVX2)
+  return (TcMask)_mm256_cvtepi32_epi64((__m128i)a); /* the sign is all that counts */
+#else
+  typedef int32_t Int __attribute__((vector_size(4 * TC_LANES)));
+  return __builtin_convertvector((Int)a < 0, TcLong);
+#endif
+}
+
 /* ── memory ── */
 
-/* Of records of five words each, those at `index`: component[k][i] is word k of lane i's. May read 12 bytes beyond a record. Loads and
- * shuffles, as gather instructions take longer. */
-TC_INLINE void tc_load_fives(const uint32_t *words, TcWord index, TcWord component[5]) {
+/* One record of five words a lane, words 1 to 4 still to be chosen from. Loads and permutations, as gather instructions take longer. */
+typedef struct TcFives {
 #if defined(TC_SIMD_AVX512)
-  const __m512i wide = _mm512_cvtepu32_epi64((__m256i)index), offset = _mm512_add_epi64(_mm512_slli_epi64(wide, 4), _mm512_slli_epi64(wide, 2));
+  __m512i pair[4]; /* of lanes i and i + 4: eight words from each record on */
+#else
+  TcWord word[5];
+#endif
+} TcFives;
+
+/* The records at `index`. May read 12 bytes beyond a record. */
+TC_INLINE TcFives tc_load_fives(const uint32_t *words, TcWord index) {
+  TcFives fives;
+#if defined(TC_SIMD_AVX512)
+  const __m512i wide = _mm512_cvtepu32_epi64((__m256i)index), offset = _mm512_add_epi64(_mm512_slli_epi64(wide, 2), _mm512_slli_epi64(wide, 4));
   int64_t at[8];
   memcpy(at, &offset, sizeof at);
   const char *bytes = (const char *)words;
-  __m512i pair[4]; /* records i and i + 4 */
   for (int i = 0; i < 4; ++i) {
-    pair[i] = _mm512_inserti64x4(_mm512_castsi256_si512(_mm256_loadu_si256((const __m256i *)(const void *)(bytes + at[i]))),
-                                 _mm256_loadu_si256((const __m256i *)(const void *)(bytes + at[i + 4])), 1);
+    fives.pair[i] = _mm512_inserti64x4(_mm512_castsi256_si512(_mm256_loadu_si256((const __m256i *)(const void *)(bytes + at[i]))),
+                                       _mm256_loadu_si256((const __m256i *)(const void *)(bytes + at[i + 4])), 1);
   }
-  const __m512i a = _mm512_unpacklo_epi32(pair[0], pair[1]), b = _mm512_unpackhi_epi32(pair[0], pair[1]);
-  const __m512i c = _mm512_unpacklo_epi32(pair[2], pair[3]), d = _mm512_unpackhi_epi32(pair[2], pair[3]);
-  const __m512i word[4] = {_mm512_unpacklo_epi64(a, c), _mm512_unpackhi_epi64(a, c), _mm512_unpacklo_epi64(b, d),
-                           _mm512_unpackhi_epi64(b, d)};
-  const __m512i even = _mm512_setr_epi64(0, 1, 4, 5, 0, 0, 0, 0), odd = _mm512_setr_epi64(2, 3, 6, 7, 0, 0, 0, 0);
-  for (int k = 0; k < 4; ++k) component[k] = (TcWord)_mm512_castsi512_si256(_mm512_permutexvar_epi64(even, word[k]));
-  component[4] = (TcWord)_mm512_castsi512_si256(_mm512_permutexvar_epi64(odd, word[0]));
 #else
   for (int k = 0; k < 5; ++k) {
     uint32_t word[TC_LANES];
     for (int i = 0; i < TC_LANES; ++i) word[i] = words[(size_t)index[i] * 5 + (size_t)k];
-    memcpy(&component[k], word, sizeof word);
+    memcpy(&fives.word[k], word, sizeof word);
   }
+#endif
+  return fives;
+}
+
+#if defined(TC_SIMD_AVX512)
+/* Word `at`, less than 8, of each record. */
+TC_INLINE TcWord tc_fives_word(const TcFives *fives, __m256i at) {
+  const __m256i base = _mm256_setr_epi32(0, 16, 0, 16, 8, 24, 8, 24);
+  const __m512i index = _mm512_castsi256_si512(_mm256_add_epi32(base, at));
+  const __m256i front = _mm512_castsi512_si256(_mm512_permutex2var_epi32(fives->pair[0], index, fives->pair[1]));
+  const __m256i back = _mm512_castsi512_si256(_mm512_permutex2var_epi32(fives->pair[2], index, fives->pair[3]));
+  return (TcWord)_mm256_blend_epi32(front, back, 0xCC);
+}
+#endif
+
+TC_INLINE TcWord tc_fives_first(const TcFives *fives) {
+#if defined(TC_SIMD_AVX512)
+  return tc_fives_word(fives, _mm256_setzero_si256());
+#else
+  return fives->word[0];
+#endif
+}
+
+/* Word 1 + rank, where the rank, up to 3, is how many of four conditions hold: −1 for each that does. */
+TC_INLINE TcWord tc_fives_ranked(const TcFives *fives, const TcWord condition[4]) {
+  const TcWord minus_rank = (condition[0] + condition[1]) + (condition[2] + condition[3]);
+#if defined(TC_SIMD_AVX512)
+  return tc_fives_word(fives, (__m256i)(1 - minus_rank));
+#else
+  const TcWord rank = -minus_rank, *word = fives->word, odd = -(rank & 1), upper = -(rank >> 1);
+  const TcWord low = (word[2] & odd) | (word[1] & ~odd), high = (word[4] & odd) | (word[3] & ~odd);
+  return (high & upper) | (low & ~upper);
 #endif
 }
 

@@ -40,7 +40,7 @@ static TcMask place_rays(const TetcastVolume *volume, const Lines *lines, TcRays
   for (int k = 0; k < 3; ++k) {
     const TcVec product = along * direction[k];
     TcVec shift;
-    rest[k] = tc_product_rest(along, direction[k], product);
+    rest[k] = tc_product_errors(along, direction[k], product);
     rest[k] += two_sum(product, lines->offset[k], &shift);
     rest[k] += two_sum(lines->eye[k], shift, &rays->origin[k]);
     rays->origin[k] = without_tiny(rays->origin[k]);

@@ -6,6 +6,14 @@
 #include "render/packet_rays.h"
 #include "traverse/walk.h"
 
+/* for each packet i of those under way; unrolled, so that their instructions mix */
+#if defined(__clang__)
+#define TC_UNROLLED _Pragma("clang loop unroll(full)")
+#else
+#define TC_UNROLLED _Pragma("GCC unroll 4")
+#endif
+#define TC_EACH_PACKET TC_UNROLLED for (int i = 0; i < TC_PACKETS; ++i)
+
 enum {
   PACKET_X = TC_LANES == 8 ? 4 : 2, /* a packet's pixels */
   PACKET_Y = 2
@@ -16,10 +24,13 @@ typedef struct Packet {
   TcWalks walks;
   TcLights lights;
   TcVec seen; /* depth up to which a path has been seen */
-  TcMask active;
+  unsigned active;   /* lanes on their way, those of `ended` included */
   unsigned lanes;    /* those of rays */
   unsigned starting; /* those that set out anew, from `face` */
+  unsigned ended;    /* those at the shell, which wait until the packet is looked at */
   unsigned stopped;
+  unsigned again; /* those with more faces left than the one where they leave, perhaps */
+  TcWord from;    /* the cells last crossed */
   int64_t steps, next[TC_LANES];
   uint32_t face[TC_LANES];
   TcSpans *spans;
@@ -43,7 +54,7 @@ static void mark_done(const TcShell *shell, TcSpans *spans, int64_t from, uint32
 
 /* The lanes of `active` that are at the shell. */
 TC_INLINE unsigned at_shell(const TcShell *shell, TcMask active, TcWord cell) {
-  unsigned ended = tc_bits(tc_and(active, tc_gt_word(cell, tc_set_word(TC_SHELL - 1))));
+  unsigned ended = tc_bits(tc_and(active, tc_high_bit(cell)));
   if (!shell->visible) return ended;
   for (unsigned lanes = tc_bits(active) & ~ended; lanes; lanes &= lanes - 1) {
     const int i = __builtin_ctz(lanes);
@@ -52,16 +63,15 @@ TC_INLINE unsigned at_shell(const TcShell *shell, TcMask active, TcWord cell) {
   return ended;
 }
 
-/* One step of the lanes of `active`: the cells ahead are crossed and their light added, beyond *seen. */
-TC_INLINE TcMask cross(const TetcastVolume *volume, const bool wide, const bool cells, const TcPieces *pieces, double thin,
-                       const TcRays *rays, TcMask active, TcWalks *walks, TcVec *seen, TcLights *lights, int64_t *segments) {
-  const TcVec z = walks->z, s = walks->s;
-  const TcWord cell = walks->cell;
-  const TcMask lost = tc_walks_step(volume, wide, rays, active, walks);
-  TcMask moved = tc_and(tc_and_not(active, lost), tc_gt(walks->z, *seen));
-  *segments += __builtin_popcount(tc_bits(moved));
-  const TcVec from = *seen;
-  *seen = tc_select(moved, walks->z, from);
+/* The light of what walks have crossed, in the lanes of `moved`: `cell` from depth z and scalar s on, what lies beyond *seen. */
+TC_INLINE void add_light(const TetcastVolume *volume, const bool cells, const TcPieces *pieces, TcMask moved, TcVec z, TcVec s, TcWord cell,
+                         Packet *packet, TcWorker *worker) {
+  const TcWalks *walks = &packet->walks;
+  const double thin = worker->tolerance.thin;
+  const TcVec from = packet->seen;
+  moved = tc_and(moved, tc_gt(walks->z, from));
+  worker->segments += __builtin_popcount(tc_bits(moved));
+  packet->seen = tc_select(moved, walks->z, from);
   if (cells) {
     double value[TC_LANES] = {0};
     for (unsigned lanes = tc_bits(moved); lanes; lanes &= lanes - 1) {
@@ -71,7 +81,7 @@ TC_INLINE TcMask cross(const TetcastVolume *volume, const bool wide, const bool 
     TcVec values;
     memcpy(&values, value, sizeof values);
     moved = tc_and(moved, tc_eq(values, values)); /* NaN is transparent */
-    tc_lights_add(lights, pieces, thin, moved, walks->z - from, values, values);
+    tc_lights_add(&packet->lights, pieces, thin, moved, walks->z - from, values, values);
   } else {
     TcVec s0 = s;
     const TcMask behind = tc_and(moved, tc_lt(z, from));
@@ -80,9 +90,8 @@ TC_INLINE TcMask cross(const TetcastVolume *volume, const bool wide, const bool 
       s0 = tc_select(behind, (1 - w) * s + w * walks->s, s);
     }
     moved = tc_and(moved, tc_and(tc_eq(s0, s0), tc_eq(walks->s, walks->s)));
-    tc_lights_add(lights, pieces, thin, moved, walks->z - from, s0, walks->s);
+    tc_lights_add(&packet->lights, pieces, thin, moved, walks->z - from, s0, walks->s);
   }
-  return lost;
 }
 
 /* The rays along kz among those placed; false: out of memory. */
@@ -91,10 +100,10 @@ static bool packet_begin(const TcShell *shell, const TcRays *placed, const TcVec
   memset(&packet->walks, 0, sizeof packet->walks);
   turn_rays(placed, rest, kz, &packet->rays);
   tc_lights_begin(&packet->lights);
-  packet->active = tc_mask_of(0);
+  packet->active = 0;
   packet->seen = tc_set(0);
   packet->lanes = lanes;
-  packet->starting = packet->stopped = 0;
+  packet->ended = packet->starting = packet->stopped = 0;
   packet->steps = 0;
   packet->spans = spans;
   if (!trace(shell, &packet->rays, lanes, spans)) return false;
@@ -105,52 +114,80 @@ static bool packet_begin(const TcShell *shell, const TcRays *placed, const TcVec
   return true;
 }
 
-static bool packet_runs(const Packet *packet) { return packet->starting || tc_any(packet->active); }
+static bool packet_runs(const Packet *packet) { return packet->starting || packet->active; }
 
-/* Lanes that end, and perhaps set out anew. */
-static __attribute__((noinline)) void leave(const TcShell *shell, Packet *packet, TcWorker *worker, TcWord from, TcMask lost,
-                                            TcMask opaque, unsigned ended) {
+/* The lanes of `starting` set out. */
+static void set_out(const TcShell *shell, const bool wide, Packet *packet) {
+  TcWalks *walks = &packet->walks;
+  const TcMask mask = tc_mask_of(packet->starting);
+  tc_walks_begin(shell, wide, &packet->rays, mask, packet->face, walks);
+  packet->seen = tc_select(mask, tc_max(walks->z, packet->rays.near), packet->seen);
+  packet->active |= packet->starting;
+  packet->starting = packet->again = 0;
+  for (int i = 0; i < TC_LANES; ++i) {
+    if (packet->active >> i & 1 && packet->spans[i].count - packet->next[i] > 1) packet->again |= 1U << i;
+  }
+}
+
+/* The lanes of `ended` may set out anew. */
+static void arrive(const TcShell *shell, Packet *packet) {
   const TcWalks *walks = &packet->walks;
-  packet->stopped |= tc_bits(opaque);
-  worker->lost += __builtin_popcount(tc_bits(lost));
-  ended &= ~(tc_bits(opaque) | tc_bits(lost));
-  packet->active = tc_and_not(tc_and_not(packet->active, tc_or(lost, opaque)), tc_mask_of(ended));
   const TcWord vertex_xor = walks->v[0].id ^ walks->v[1].id ^ walks->v[2].id;
-  for (; ended; ended &= ended - 1) {
-    const int i = __builtin_ctz(ended);
-    mark_done(shell, &packet->spans[i], packet->next[i], from[i], vertex_xor[i]);
+  packet->active &= ~packet->ended;
+  for (; packet->ended; packet->ended &= packet->ended - 1) {
+    const int i = __builtin_ctz(packet->ended);
+    mark_done(shell, &packet->spans[i], packet->next[i], packet->from[i], vertex_xor[i]);
     if (next_start(&packet->spans[i], &packet->next[i], &packet->face[i])) packet->starting |= 1U << i;
   }
 }
 
-/* Steps of a packet until a lane sets out anew. */
-TC_INLINE void advance(const TcShell *shell, const bool wide, const bool cells, const TcPieces *pieces, TcWorker *worker,
-                       Packet *packet) {
-  if (packet->starting) {
-    const TcMask mask = tc_mask_of(packet->starting);
-    tc_walks_begin(shell, wide, &packet->rays, mask, packet->face, &packet->walks);
-    packet->seen = tc_select(mask, tc_max(packet->walks.z, packet->rays.near), packet->seen);
-    packet->active = tc_or(packet->active, mask);
-    packet->starting = 0;
+/* Steps of packets until one has to be looked at: because all its lanes have ended, or one that may set out anew has. Of most rays only
+ * the face where they leave is left when they end; they need not be looked at one by one, and what is hard to predict is not branched on.
+ *
+ * A packet's next step waits for the one before, about 200 cycles; another packet's fits in between. */
+TC_INLINE void advance(const TcShell *shell, const bool wide, const bool cells, const TcPieces *pieces, TcWorker *worker, Packet *packet) {
+  TcMask active[TC_PACKETS];
+  bool halt = false;
+  TC_EACH_PACKET {
+    if (packet[i].starting) set_out(shell, wide, &packet[i]);
+    active[i] = tc_mask_of(packet[i].active & ~packet[i].ended);
   }
-  TcWalks *walks = &packet->walks;
-  TcMask active = packet->active;
-  for (;;) {
-    const TcWord from = walks->cell;
-    const TcMask lost = cross(shell->volume, wide, cells, pieces, worker->tolerance.thin, &packet->rays, active, walks, &packet->seen,
-                              &packet->lights, &worker->segments);
-    if (++packet->steps % 64 == 0) tc_lights_end_block(&packet->lights);
-    const TcMask opaque = tc_lights_opaque(&packet->lights, pieces, worker->tolerance.opaque, active);
-    const unsigned ended = at_shell(shell, active, walks->cell);
-    if (!(tc_bits(opaque) | tc_bits(lost) | ended)) continue;
-    leave(shell, packet, worker, from, lost, opaque, ended);
-    active = packet->active;
-    if (packet->starting || !tc_any(active)) return;
+  while (!halt) {
+    TcStep step[TC_PACKETS];
+    TcVec z[TC_PACKETS], s[TC_PACKETS];
+    TcMask lost[TC_PACKETS];
+    TC_EACH_PACKET {
+      z[i] = packet[i].walks.z;
+      s[i] = packet[i].walks.s;
+      packet[i].from = tc_select_word(active[i], packet[i].walks.cell, packet[i].from);
+      tc_step_cells(shell->volume, active[i], &packet[i].walks, &step[i]);
+    }
+    TC_EACH_PACKET tc_step_vertices(shell->volume, wide, &packet[i].rays, &step[i]);
+    TC_EACH_PACKET lost[i] = tc_step_out(active[i], &step[i], &packet[i].walks);
+    TC_EACH_PACKET add_light(shell->volume, cells, pieces, tc_and_not(active[i], lost[i]), z[i], s[i], packet[i].from, &packet[i], worker);
+    TC_EACH_PACKET {
+      if (++packet[i].steps % 64 == 0) tc_lights_end_block(&packet[i].lights);
+      const TcMask opaque = tc_lights_opaque(&packet[i].lights, pieces, worker->tolerance.opaque, active[i]);
+      if (tc_any(tc_or(lost[i], opaque))) {
+        packet[i].stopped |= tc_bits(opaque);
+        worker->lost += __builtin_popcount(tc_bits(lost[i]));
+        active[i] = tc_and_not(active[i], tc_or(lost[i], opaque));
+        packet[i].active &= ~(tc_bits(lost[i]) | tc_bits(opaque));
+        halt = halt || !packet[i].active;
+      }
+      active[i] = tc_and_not(active[i], tc_mask_of(at_shell(shell, active[i], packet[i].walks.cell)));
+      const unsigned ended = packet[i].active & ~tc_bits(active[i]);
+      halt = halt || (ended && (ended == packet[i].active || ended & packet[i].again));
+    }
+  }
+  TC_EACH_PACKET {
+    packet[i].ended = packet[i].active & ~tc_bits(active[i]);
+    if (packet[i].ended == packet[i].active || packet[i].ended & packet[i].again) arrive(shell, &packet[i]);
   }
 }
 
 /* One function for each way the data lie. */
-typedef void Advance(const TcShell *shell, const TcPieces *pieces, TcWorker *worker, Packet *packet);
+typedef void Advance(const TcShell *shell, const TcPieces *pieces, TcWorker *worker, Packet packet[TC_PACKETS]);
 #define ADVANCE(name, wide, cells)                                                                                               \
   static __attribute__((noinline)) void name(const TcShell *shell, const TcPieces *pieces, TcWorker *worker, Packet *packet) { \
     advance(shell, wide, cells, pieces, worker, packet);                                                                       \
@@ -163,6 +200,47 @@ ADVANCE(advance_narrow_cells, false, true)
 static Advance *advance_for(const TetcastVolume *volume) {
   if (volume->association == TETCAST_CELL) return volume->vertices_are_double ? advance_wide_cells : advance_narrow_cells;
   return volume->vertices_are_double ? advance_wide : advance_narrow;
+}
+
+/* Where packets come from, and what becomes of their light. */
+typedef struct Source {
+  bool (*next)(void *user, TcSpans *spans, Packet *packet, bool *more); /* *more: whether there was one. False: out of memory */
+  void (*finish)(void *user, const Packet *packet);
+  void *user;
+} Source;
+
+/* The rays of one kz among those that wait become a packet; false: out of memory. */
+static bool begin_waiting(const TcShell *shell, const TcRays *placed, const TcVec rest[3], unsigned *waiting, TcSpans *spans,
+                          Packet *packet) {
+  unsigned along = 0;
+  int kz = -1;
+  while (!along) along = *waiting & tc_bits(lanes_along(placed->direction, ++kz));
+  *waiting &= ~along;
+  return packet_begin(shell, placed, rest, kz, along, spans, packet);
+}
+
+/* All packets of a source, several at a time. */
+static bool run_packets(const TcShell *shell, const TcPieces *pieces, TcWorker *worker, const Source *source) {
+  Advance *const step = advance_for(shell->volume);
+  Packet packets[TC_PACKETS];
+  bool under_way[TC_PACKETS] = {false};
+  memset(packets, 0, sizeof packets);
+  for (;;) {
+    bool any = false;
+    for (int i = 0; i < TC_PACKETS; ++i) {
+      while (!packet_runs(&packets[i])) {
+        if (under_way[i]) {
+          tc_lights_end_block(&packets[i].lights);
+          source->finish(source->user, &packets[i]);
+        }
+        if (!source->next(source->user, worker->spans + i * TC_PACKET, &packets[i], &under_way[i])) return false;
+        if (!under_way[i]) break;
+      }
+      any = any || under_way[i];
+    }
+    if (!any) return true;
+    step(shell, pieces, worker, packets);
+  }
 }
 
 /* ── a tile ── */
@@ -180,10 +258,9 @@ typedef struct Tile {
   double sum[TC_TILE * TC_TILE][5]; /* red, green, blue, alpha, bound of their error */
 } Tile;
 
-/* Places the rays of the next packet of pixels; false: there is none. */
-static bool place_next(Tile *tile) {
+/* Places the rays of the next packet of pixels. */
+static void place_next(Tile *tile) {
   const TcJob *job = tile->job;
-  if (tile->y >= tile->y1) return false;
   double u[TC_LANES], v[TC_LANES];
   unsigned lanes = 0;
   for (int lane = 0; lane < TC_LANES; ++lane) {
@@ -200,38 +277,26 @@ static bool place_next(Tile *tile) {
   tile->waiting = lanes & tc_bits(place_rays(job->shell->volume, &lines, &tile->placed, tile->rest));
   tile->waiting_x = tile->x;
   tile->waiting_y = tile->y;
-  if (++tile->sample < job->samples_x * job->samples_y) return true;
+  if (++tile->sample < job->samples_x * job->samples_y) return;
   tile->sample = 0;
   tile->x += PACKET_X;
-  if (tile->x < tile->x1) return true;
+  if (tile->x < tile->x1) return;
   tile->x = tile->x0;
   tile->y += PACKET_Y;
-  return true;
 }
 
-/* The next packet that meets anything. *more: whether there was one. False: out of memory. */
-static bool next_packet(Tile *tile, TcSpans *spans, Packet *packet, bool *more) {
-  *more = true;
-  for (;;) {
-    while (!tile->waiting) {
-      if (!place_next(tile)) {
-        *more = false;
-        return true;
-      }
-    }
-    unsigned along = 0;
-    int kz = -1;
-    while (!along) along = tile->waiting & tc_bits(lanes_along(tile->placed.direction, ++kz));
-    tile->waiting &= ~along;
-    packet->x = tile->waiting_x;
-    packet->y = tile->waiting_y;
-    if (!packet_begin(tile->job->shell, &tile->placed, tile->rest, kz, along, spans, packet)) return false;
-    if (packet_runs(packet)) return true;
-  }
+static bool next_of_tile(void *user, TcSpans *spans, Packet *packet, bool *more) {
+  Tile *tile = user;
+  while (!tile->waiting && tile->y < tile->y1) place_next(tile);
+  *more = tile->waiting != 0;
+  if (!*more) return true;
+  packet->x = tile->waiting_x;
+  packet->y = tile->waiting_y;
+  return begin_waiting(tile->job->shell, &tile->placed, tile->rest, &tile->waiting, spans, packet);
 }
 
-static void finish_packet(Tile *tile, Packet *packet) {
-  tc_lights_end_block(&packet->lights);
+static void finish_of_tile(void *user, const Packet *packet) {
+  Tile *tile = user;
   const TcVec alpha = tc_segments_constant(tc_all(), packet->lights.depth).w0;
   for (unsigned left = packet->lanes; left; left &= left - 1) {
     const int i = __builtin_ctz(left);
@@ -257,50 +322,64 @@ static void store_tile(const Tile *tile) {
 
 bool PACKET_KERNEL(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker) {
   Tile tile = {.job = job, .worker = worker, .x0 = x0, .y0 = y0, .x1 = x1, .y1 = y1, .x = x0, .y = y0};
-  Advance *const step = advance_for(job->shell->volume);
-  Packet packet;
-  for (;;) {
-    bool more;
-    if (!next_packet(&tile, worker->spans, &packet, &more)) return false;
-    if (!more) break;
-    while (packet_runs(&packet)) step(job->shell, job->pieces, worker, &packet);
-    finish_packet(&tile, &packet);
-  }
+  const Source source = {next_of_tile, finish_of_tile, &tile};
+  if (!run_packets(job->shell, job->pieces, worker, &source)) return false;
   store_tile(&tile);
   return true;
 }
 
-bool PACKET_CAST(const TcShell *shell, const TcPieces *pieces, const TcLine *line, int count, TcWorker *worker, TcLight *light) {
-  Advance *const step = advance_for(shell->volume);
-  for (int begin = 0; begin < count; begin += TC_LANES) {
-    const int rays = count - begin < TC_LANES ? count - begin : TC_LANES;
-    Lines lines;
-    for (int i = 0; i < TC_LANES; ++i) {
-      const TcLine *one = &line[begin + (i < rays ? i : 0)];
-      for (int k = 0; k < 3; ++k) {
-        lines.eye[k][i] = one->eye[k];
-        lines.offset[k][i] = one->offset[k];
-        lines.direction[k][i] = one->direction[k];
-      }
-      if (i < rays) light[begin + i] = tc_light_begin(worker->tolerance.thin, worker->tolerance.opaque);
-    }
-    TcRays placed;
-    TcVec rest[3];
-    const unsigned lanes = ((1U << rays) - 1) & tc_bits(place_rays(shell->volume, &lines, &placed, rest));
-    for (int kz = 0; kz < 3; ++kz) {
-      const unsigned along = lanes & tc_bits(lanes_along(placed.direction, kz));
-      Packet packet;
-      if (!along) continue;
-      if (!packet_begin(shell, &placed, rest, kz, along, worker->spans, &packet)) return false;
-      while (packet_runs(&packet)) step(shell, pieces, worker, &packet);
-      tc_lights_end_block(&packet.lights);
-      for (unsigned left = along; left; left &= left - 1) {
-        const int i = __builtin_ctz(left);
-        light[begin + i].depth = packet.lights.depth[i];
-        for (int k = 0; k < 3; ++k) light[begin + i].color[k] = packet.lights.color[k][i];
-        light[begin + i].stopped = packet.stopped >> i & 1;
-      }
+/* ── any rays ── */
+
+typedef struct Cast {
+  const TcShell *shell;
+  const TcLine *lines;
+  TcLight *light;
+  int count, next; /* rays, and the first of those that have not been placed */
+  int first;       /* of those placed */
+  TcRays placed;
+  TcVec rest[3];
+  unsigned waiting;
+} Cast;
+
+static void place_cast(Cast *cast) {
+  const int rays = cast->count - cast->next < TC_LANES ? cast->count - cast->next : TC_LANES;
+  Lines lines;
+  for (int i = 0; i < TC_LANES; ++i) {
+    const TcLine *line = &cast->lines[cast->next + (i < rays ? i : 0)];
+    for (int k = 0; k < 3; ++k) {
+      lines.eye[k][i] = line->eye[k];
+      lines.offset[k][i] = line->offset[k];
+      lines.direction[k][i] = line->direction[k];
     }
   }
-  return true;
+  cast->waiting = ((1U << rays) - 1) & tc_bits(place_rays(cast->shell->volume, &lines, &cast->placed, cast->rest));
+  cast->first = cast->next;
+  cast->next += rays;
+}
+
+static bool next_of_cast(void *user, TcSpans *spans, Packet *packet, bool *more) {
+  Cast *cast = user;
+  while (!cast->waiting && cast->next < cast->count) place_cast(cast);
+  *more = cast->waiting != 0;
+  if (!*more) return true;
+  packet->x = cast->first;
+  return begin_waiting(cast->shell, &cast->placed, cast->rest, &cast->waiting, spans, packet);
+}
+
+static void finish_of_cast(void *user, const Packet *packet) {
+  Cast *cast = user;
+  for (unsigned left = packet->lanes; left; left &= left - 1) {
+    const int i = __builtin_ctz(left);
+    TcLight *light = &cast->light[packet->x + i];
+    light->depth = packet->lights.depth[i];
+    for (int k = 0; k < 3; ++k) light->color[k] = packet->lights.color[k][i];
+    light->stopped = packet->stopped >> i & 1;
+  }
+}
+
+bool PACKET_CAST(const TcShell *shell, const TcPieces *pieces, const TcLine *line, int count, TcWorker *worker, TcLight *light) {
+  for (int i = 0; i < count; ++i) light[i] = tc_light_begin(worker->tolerance.thin, worker->tolerance.opaque);
+  Cast cast = {.shell = shell, .lines = line, .light = light, .count = count};
+  const Source source = {next_of_cast, finish_of_cast, &cast};
+  return run_packets(shell, pieces, worker, &source);
 }

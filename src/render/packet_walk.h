@@ -57,34 +57,30 @@ TC_INLINE TcPoints tc_project_components(const TcRays *rays, const TcVec compone
                     component[3], id};
 }
 
-/* tc_edge_close() for the lanes of `close`. */
-static __attribute__((noinline)) TcVec tc_edges_close(const TcPoints *a, const TcPoints *b, TcVec e, TcMask close) {
-  const TcVec p = a->x * b->y, q = a->y * b->x;
-  const TcVec p_rest = tc_product_rest(a->x, b->y, p), q_rest = tc_product_rest(a->y, b->x, q);
-  const TcVec d = p_rest - q_rest, sum = (p - q) + d;
-  unsigned zero = tc_bits(tc_and(close, tc_eq(sum, tc_set(0))));
-  e = tc_select(close, sum, e);
+/* tc_edge_tie() for the lanes of `zero`. */
+static __attribute__((noinline)) TcVec tc_edges_tie(const TcPoints *a, const TcPoints *b, TcVec e, unsigned zero) {
   for (; zero; zero &= zero - 1) {
     const int i = __builtin_ctz(zero);
-    const TcPoint c = {a->x[i], a->y[i], 0, 0, a->id[i]}, f = {b->x[i], b->y[i], 0, 0, b->id[i]};
-    e[i] = tc_edge_close(&c, &f);
+    const TcPoint c = {a->x[i], a->y[i], 0, 0, a->id[i]}, d = {b->x[i], b->y[i], 0, 0, b->id[i]};
+    e[i] = tc_edge_tie(&c, &d);
   }
   return e;
 }
 
-/* tc_edge() of three pairs at once: where products nearly cancel, which is rare, they are all looked at again. */
+/* tc_edge() of three pairs at once. */
 TC_INLINE void tc_edges(TcMask active, const TcPoints *const a[3], const TcPoints *const b[3], TcVec e[3]) {
-  TcMask close[3];
+  TcMask zero[3];
   for (int k = 0; k < 3; ++k) {
-    const TcVec p = a[k]->x * b[k]->y;
-    e[k] = p - a[k]->y * b[k]->x;
-    close[k] = tc_and(active, tc_le(tc_abs(e[k]), 0x1p-8 * tc_abs(p)));
+    const TcVec p = a[k]->x * b[k]->y, q = a[k]->y * b[k]->x;
+    e[k] = (p - q) + (tc_product_errors(a[k]->x, b[k]->y, p) - tc_product_errors(a[k]->y, b[k]->x, q));
+    zero[k] = tc_eq(e[k], tc_set(0));
   }
-  if (!tc_any(tc_or(tc_or(close[0], close[1]), close[2]))) return;
+  if (!tc_any(tc_and(active, tc_or(tc_or(zero[0], zero[1]), zero[2])))) return;
   for (int k = 0; k < 3; ++k) {
-    if (!tc_any(close[k])) continue;
+    const unsigned ties = tc_bits(tc_and(active, zero[k]));
+    if (!ties) continue;
     const TcPoints c = *a[k], d = *b[k];
-    e[k] = tc_edges_close(&c, &d, e[k], close[k]);
+    e[k] = tc_edges_tie(&c, &d, e[k], ties);
   }
 }
 
@@ -129,32 +125,40 @@ TC_INLINE void tc_walks_begin(const TcShell *shell, const bool wide, const TcRay
   tc_crossings(walks->v, walks->edge, &walks->z, &walks->s);
 }
 
-/* Crosses the cells ahead in the lanes of `active`, where `cell` becomes what is behind, TC_SHELL | face included. Returns the lanes that
- * found no way out. */
-TC_INLINE TcMask tc_walks_step(const TetcastVolume *volume, const bool wide, const TcRays *rays, TcMask active, TcWalks *walks) {
+/* A step of walks comes in three parts, which several packets take by turns: each waits for what the one before loads or decides, and in
+ * the meantime the other packets go on. */
+typedef struct TcStep {
+  TcFives cells; /* XOR of vertices, neighbours */
+  TcPoints q;    /* the vertices opposite the faces */
+} TcStep;
+
+TC_INLINE void tc_step_cells(const TetcastVolume *volume, TcMask active, const TcWalks *walks, TcStep *step) {
   const uint32_t *cells = (const uint32_t *)(const void *)volume->adjacency.cells;
-  TcPoints *v = walks->v;
   const TcWord zero = {0};
-  TcWord word[5]; /* the cells: XOR of vertices, neighbours */
-  tc_load_fives(cells, tc_select_word(active, walks->cell, zero), word);
-  const TcWord id = tc_select_word(active, word[0] ^ v[0].id ^ v[1].id ^ v[2].id, zero);
-  TcVec component[4], e[3];
-  tc_load_vertices(volume, wide, id, component);
-  const TcPoints q = tc_project_components(rays, component, id);
+  step->cells = tc_load_fives(cells, tc_select_word(active, walks->cell, zero));
+  step->q.id = tc_select_word(active, tc_fives_first(&step->cells) ^ walks->v[0].id ^ walks->v[1].id ^ walks->v[2].id, zero);
+}
+
+TC_INLINE void tc_step_vertices(const TetcastVolume *volume, const bool wide, const TcRays *rays, TcStep *step) {
+  TcVec component[4];
+  tc_load_vertices(volume, wide, step->q.id, component);
+  step->q = tc_project_components(rays, component, step->q.id);
+}
+
+/* Crosses the cells in the lanes of `active`, where `cell` becomes what is behind, TC_SHELL | face included. Returns the lanes that
+ * found no way out. */
+TC_INLINE TcMask tc_step_out(TcMask active, const TcStep *step, TcWalks *walks) {
+  TcPoints *v = walks->v;
+  const TcPoints q = step->q;
+  TcVec e[3];
   tc_edges(active, (const TcPoints *const[]){&v[0], &v[1], &v[2]}, (const TcPoints *const[]){&q, &q, &q}, e);
   TcMask positive[3], out[3];
   for (int k = 0; k < 3; ++k) positive[k] = tc_and(active, tc_gt(e[k], tc_set(0)));
   for (int k = 0; k < 3; ++k) out[k] = tc_and_not(positive[(k + 2) % 3], positive[(k + 1) % 3]);
   const TcWord left = tc_select_word(out[0], v[0].id, tc_select_word(out[1], v[1].id, v[2].id));
-  /* The neighbour of the rank of `left` among the four. Each comparison that holds moves one up. */
-  const TcMask above[4] = {tc_gt_word(left, id), tc_gt_word(left, v[0].id), tc_gt_word(left, v[1].id), tc_gt_word(left, v[2].id)};
-  TcWord last = word[4], third = word[3], second = word[2], next = word[1];
-  for (int k = 0; k < 4; ++k) {
-    next = tc_select_word(above[k], second, next);
-    second = tc_select_word(above[k], third, second);
-    if (k < 3) third = tc_select_word(above[k], last, third);
-  }
-  walks->cell = tc_select_word(active, next, walks->cell);
+  /* The neighbour has the rank of `left` among the four. */
+  const TcWord above[4] = {tc_above(left, q.id), tc_above(left, v[0].id), tc_above(left, v[1].id), tc_above(left, v[2].id)};
+  walks->cell = tc_select_word(active, tc_fives_ranked(&step->cells, above), walks->cell);
   for (int k = 0; k < 3; ++k) {
     const TcVec edge = tc_select(out[(k + 1) % 3], e[k], walks->edge[k]);
     walks->edge[k] = tc_select(out[k], -e[(k + 1) % 3], edge);

@@ -52,12 +52,13 @@ double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, const double rg
 
 enum {
   TC_TILE = 16,   /* pixels a side, at most, of what a kernel renders at once */
-  TC_PACKET = 8   /* rays, at most */
+  TC_PACKET = 8,  /* rays, at most */
+  TC_PACKETS = 2  /* packets that a worker has under way */
 };
 
 /* What a worker keeps to itself. */
 typedef struct TcWorker {
-  TcSpans spans[TC_PACKET]; /* of the rays of a packet; the scalar kernel uses the first */
+  TcSpans spans[TC_PACKETS * TC_PACKET]; /* of the rays of packets; the scalar kernel uses the first */
   const struct TcSampler *sampler; /* NULL: exact */
   TcTolerance tolerance;
   int64_t segments, lost;

@@ -125,7 +125,7 @@ static TetcastStatus run(TetcastContext *context, Render *render, const TcWorker
     stats->segments += worker->segments;
     stats->lost += worker->lost;
     stats->error = fmax(stats->error, worker->error);
-    for (int j = 0; j < TC_PACKET; ++j) {
+    for (int j = 0; j < TC_PACKETS * TC_PACKET; ++j) {
       if (worker->spans[j].out_of_memory) status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: hits of a ray");
       tc_spans_clear(&worker->spans[j]);
     }
@@ -140,7 +140,7 @@ TetcastStatus tc_scene_render(TetcastScene *scene, const TetcastCamera *camera, 
   const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
   Render render = {.kernel = tc_kernel_sampled};
   TcWorker start = {.sampler = NULL};
-  for (int i = 0; i < TC_PACKET; ++i) start.spans[i].context = context;
+  for (int i = 0; i < TC_PACKETS * TC_PACKET; ++i) start.spans[i].context = context;
   TcJob *job = &render.job;
   job->width = frame->width;
   job->height = frame->height;

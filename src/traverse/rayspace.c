@@ -19,7 +19,7 @@ bool tc_ray_begin(const TetcastVolume *volume, const TcLine *line, TcRay *ray) {
   for (int k = 0; k < 3; ++k) {
     const double product = along * direction[k];
     double shift;
-    rest[k] = fma(along, direction[k], -product);
+    rest[k] = tc_product_error(along, direction[k], product);
     rest[k] += two_sum(product, line->offset[k], &shift);
     rest[k] += two_sum(line->eye[k], shift, &ray->origin[k]);
     ray->origin[k] = tc_without_tiny(ray->origin[k]);
@@ -45,23 +45,21 @@ bool tc_ray_begin(const TetcastVolume *volume, const TcLine *line, TcRay *ray) {
   return true;
 }
 
-/* Called when the rounded products of a × b are close or equal. Their rounding errors are exact with fma, the difference of products
- * is exact when they are close, and the sum of the three is formed so that it is zero only if a × b is.
+/* Called when the rounded a × b is zero: when its two products are equal, or differ by less than their errors' difference is rounded by.
  *
- * Then the ray passes exactly through the line ab. It is thought moved by (δ, δ²), and vertex i by (0, i δ³) with an infinitesimal δ
- * (Edelsbrunner & Mücke, Simulation of simplicity, 1990):
+ * Where a × b is exactly zero, the ray passes exactly through the line ab. It is thought moved by (δ, δ²), and vertex i by (0, i δ³) with
+ * an infinitesimal δ (Edelsbrunner & Mücke, Simulation of simplicity, 1990):
  *
  *     (a − δ) × (b − δ) = a × b − δ (b.y − a.y) + δ² (b.x − a.x) + …
  *
  * so that all decisions at all cells belong to one and the same slightly moved ray and mesh, and every step of the walk has exactly
  * one way out. A triangle that is seen exactly edge-on is never crossed. */
-double tc_edge_close(const TcPoint *a, const TcPoint *b) {
-  const double p = a->x * b->y, q = a->y * b->x, e = p - q;
-  const double p_rest = fma(a->x, b->y, -p), q_rest = fma(a->y, b->x, -q);
-  const double d = p_rest - q_rest, part = p_rest - d;
-  const double d_rest = (p_rest - (d + part)) + (part - q_rest); /* d + d_rest = p_rest − q_rest exactly */
-  if (e + d != 0) return e + d;
-  if (d_rest != 0) return d_rest;
+double tc_edge_tie(const TcPoint *a, const TcPoint *b) {
+  const double p = a->x * b->y, q = a->y * b->x;
+  const double p_error = tc_product_error(a->x, b->y, p), q_error = tc_product_error(a->y, b->x, q);
+  const double d = p_error - q_error, part = p_error - d;
+  const double rest = (p_error - (d + part)) + (part - q_error); /* d + rest = p_error − q_error exactly */
+  if (rest != 0) return rest;
   bool positive;
   if (a->y != b->y) positive = b->y < a->y;
   else if (a->x != b->x) positive = b->x > a->x;

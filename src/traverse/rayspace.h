@@ -54,16 +54,30 @@ static inline TcPoint tc_project(const TetcastVolume *volume, const TcRay *ray, 
   return point;
 }
 
-double tc_edge_close(const TcPoint *a, const TcPoint *b);
+/* a b − p, exactly, where p is a b rounded; the latter's rounding error may not underflow. */
+static inline double tc_product_error(double a, double b, double p) {
+#ifdef FP_FAST_FMA
+  return fma(a, b, -p);
+#else /* Dekker, Veltkamp: halves of 26 bits, whose products are exact. |a|, |b| < 2^995 */
+  const double c = 0x1.0000002p27 * a, d = 0x1.0000002p27 * b;
+  const double a_high = c - (c - a), a_low = a - a_high, b_high = d - (d - b), b_low = b - b_high;
+  return ((a_high * b_high - p) + a_high * b_low + a_low * b_high) + a_low * b_low;
+#endif
+}
 
-/* a × b to a relative error of 2^−44, never zero, with the exact sign for the points given; where it is exactly zero, the sign for
- * points moved by an infinitesimal amount (tc_edge_close). tc_edge(a, b) = −tc_edge(b, a).
+double tc_edge_tie(const TcPoint *a, const TcPoint *b);
+
+/* a × b to a relative error of 2^−51 (of 1/2 where it is less than 2^−104 of its products), never zero, with the exact sign for the points given; where it is exactly zero, the sign for
+ * points moved by an infinitesimal amount (tc_edge_tie). tc_edge(a, b) = −tc_edge(b, a).
  *
- * Where nothing much cancels, the difference of the rounded products will do. That edges have relative accuracy matters: they are
- * the weights of depth and value, also on faces that are seen almost edge-on, where all three nearly cancel. */
+ * The errors of the two products are added to their difference e. If the products are within a factor of two, e is exact (Sterbenz), as
+ * is the sum of the errors but for its last bit; else e is at least half of the larger product and the errors are below its last bits.
+ * That edges have relative accuracy matters: they are the weights of depth and value, also on faces that are seen almost edge-on, where
+ * all three nearly cancel. */
 static inline double tc_edge(const TcPoint *a, const TcPoint *b) {
-  const double p = a->x * b->y, e = p - a->y * b->x;
-  return fabs(e) > 0x1p-8 * fabs(p) ? e : tc_edge_close(a, b);
+  const double p = a->x * b->y, q = a->y * b->x;
+  const double e = (p - q) + (tc_product_error(a->x, b->y, p) - tc_product_error(a->y, b->x, q));
+  return e != 0 ? e : tc_edge_tie(a, b);
 }
 
 /* Whether the ray crosses a triangle whose edges ab, bc, ca have these values. */
