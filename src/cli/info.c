@@ -78,7 +78,7 @@ static TetcastStatus get_arrays(Info *info) {
 }
 
 static TetcastStatus get_info(Info *info, TetcastContext *context) {
-  TetcastStatus status = info->vtk->dataset_read(context, info->path, &info->dataset);
+  TetcastStatus status = info->vtk->dataset_read(context, info->path, NULL, &info->dataset);
   if (status == TETCAST_OK)
     status = get_arrays(info);
   TetcastMesh *mesh = NULL;

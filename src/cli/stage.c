@@ -28,7 +28,7 @@ int stage_read(Stage *stage, const RenderOptions *options) {
   if (!vtk)
     return CLI_FAILED;
   const char *array = NULL;
-  TetcastStatus status = vtk->dataset_read(stage->context, options->input, &stage->dataset);
+  TetcastStatus status = vtk->dataset_read(stage->context, options->input, NULL, &stage->dataset);
   if (status == TETCAST_OK)
     status = vtk->dataset_field(stage->dataset, options->array, &stage->field, &array);
   if (status == TETCAST_OK) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -111,6 +112,7 @@ std::string file_kind(const std::string &head) {
   const size_t first = head.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (first == std::string::npos) return "";
   if (head[first] == '<') return head.find("<VTKFile") == std::string::npos ? "" : "VTKFile " + xml_type(head);
+  if (head[first] == '{') return "JSON";
   if (begins_with(head, "# vtk DataFile")) return "vtk " + legacy_type(head);
   if (begins_with(head, "\x89HDF")) return "HDF5";
   if (begins_with(head, "CDF\x01") || begins_with(head, "CDF\x02") || begins_with(head, "CDF\x05")) return "NetCDF";
@@ -127,6 +129,21 @@ bool has_extension(const char *path, const char *extension) {
   return length > tail && strcasecmp(path + length - tail, extension) == 0;
 }
 
+bool is_surface(const std::string &kind) {
+  for (const char *surface : {"VTKFile PolyData", "VTKFile PPolyData", "vtk POLYDATA", "PLY", "STL", "OFF"}) {
+    if (kind == surface) return true;
+  }
+  return false;
+}
+
+double number_of(const std::string &text) {
+  size_t at = 0;
+  const std::string word = word_at(text, &at);
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size() && !word.empty() ? value : std::nan("");
+}
+
 void refuse(const char *path, const std::string &kind, const char *wanted, const char *extensions) {
   if (kind.empty()) {
     fail(TETCAST_ERROR_DATA, "%s: is not a file of %s in a known format (%s)", path, wanted, extensions);
@@ -140,8 +157,9 @@ void refuse(const char *path, const std::string &kind, const char *wanted, const
   }
   const size_t space = kind.find(' ');
   const bool vtk = space != std::string::npos;
-  fail(TETCAST_ERROR_DATA, "%s: holds %s%s, not %s", path, vtk ? kind.c_str() + space + 1 : kind.c_str(),
-       vtk ? "" : " data", wanted);
+  const bool fillable = std::strcmp(wanted, "a volume mesh") == 0 && is_surface(kind);
+  fail(TETCAST_ERROR_DATA, "%s: holds %s%s, not %s%s", path, vtk ? kind.c_str() + space + 1 : kind.c_str(), vtk ? "" : " data", wanted,
+       fillable ? ": a surface, which tetcast mesh fills with tetrahedra if it is closed" : "");
 }
 
 // ── what VTK hands out ──

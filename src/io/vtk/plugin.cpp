@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plugin.hpp"
+
+#include <cerrno>
+#include <csignal>
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "common.hpp"
+#include "files.hpp"
+#include "formats.hpp"
+
+namespace tcv {
+
+static std::string plugin_path(const char *name) {
+  const std::string file = std::string("libtetcast-vtk-") + name + ".so";
+  Dl_info here;
+  if (!dladdr(reinterpret_cast<void *>(&tetcast_dataset_read), &here) || !here.dli_fname) return file;
+  const std::string own = here.dli_fname;
+  const size_t slash = own.rfind('/');
+  return slash == std::string::npos ? file : own.substr(0, slash + 1) + file;
+}
+
+bool plugin_exists(const char *name) { return access(plugin_path(name).c_str(), R_OK) == 0; }
+
+static PluginRead load(const char *path, const char *name) {
+  const std::string library = plugin_path(name);
+  // Stays loaded: objects that it made may live on.
+  void *handle = dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL);
+  void *symbol = handle ? dlsym(handle, "tetcast_vtk_plugin_read") : nullptr;
+  if (!symbol) fail(TETCAST_ERROR_UNSUPPORTED, "%s: reading this format needs %s, which can't be loaded: %s", path, library.c_str(), dlerror());
+  return reinterpret_cast<PluginRead>(symbol);
+}
+
+// No more than the machine has, beside what the process has already: a size that a damaged file claims is then refused.
+static void limit_memory() {
+#ifndef __SANITIZE_ADDRESS__
+  rlimit limit;
+  if (getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  const auto memory = static_cast<rlim_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
+  if (limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur > memory) limit.rlim_cur = memory;
+  setrlimit(RLIMIT_DATA, &limit);
+#endif
+}
+
+enum Trial { GOOD = 0, BAD = 1, OTHER_FORMAT = 2 };
+
+[[noreturn]] static void try_here(PluginRead read, const PluginRequest &request) {
+  // A crash ends this process, whatever handlers the host has: they would go on with its work in here.
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
+  const int null = open("/dev/null", O_WRONLY);
+  dup2(null, STDOUT_FILENO);
+  dup2(null, STDERR_FILENO);
+  alarm(600);
+  limit_memory();
+  try {
+    PluginResult result;
+    read(&request, &result);
+    _exit(result.object ? GOOD : OTHER_FORMAT);
+  } catch (const Failure &) {
+    _exit(GOOD); // this library's own, as for a step there is not: will be heard of again
+  } catch (...) {
+    _exit(BAD);
+  }
+}
+
+// VTK's readers crash on some damaged files, and print about others: a child process tries first.
+static void try_in_child(PluginRead read, const PluginRequest &request, const char *format) {
+  const char *path = request.path.c_str();
+  const pid_t child = fork();
+  if (child < 0) fail(TETCAST_ERROR_MEMORY, "%s: no process could be started to try reading it", path);
+  if (child == 0) try_here(read, request);
+  int status;
+  while (waitpid(child, &status, 0) < 0) {
+    if (errno != EINTR) fail(TETCAST_ERROR_IO, "%s: the process that tried reading it is lost", path);
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == OTHER_FORMAT) {
+    fail(TETCAST_ERROR_UNSUPPORTED, "%s: is not a file of format %s, or damaged", path, format);
+  }
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != GOOD) {
+    fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: VTK's reader of %s files fails on it", path, format);
+  }
+}
+
+// Reads by plugin `name`.
+static void read_plugin(const Reading &reading, const char *name, const char *format, Contents *contents) {
+  const char *path = reading.path.c_str();
+  const PluginRead read = load(path, name);
+  const PluginRequest request = {reading.path, [&](const std::vector<double> &times) { return choose_step(reading.path, *reading.desc, times); }};
+  try_in_child(read, request, format);
+  const auto result = captured(reading.context, path, [&] {
+    PluginResult all;
+    read(&request, &all);
+    return all;
+  });
+  if (!result.object) fail(TETCAST_ERROR_DATA, "%s: changed while it was read", path);
+  add_object(reading, result.object, contents);
+  contents->times = result.times;
+  contents->step = result.step;
+}
+
+void read_exodus(const Reading &reading, Contents *contents) {
+  check_netcdf(reading.path.c_str());
+  read_plugin(reading, "exodus", "Exodus (on NetCDF or HDF5)", contents);
+}
+
+} // namespace tcv
