@@ -184,8 +184,8 @@ void join_cells(const std::vector<tcv::Piece> &pieces, const std::vector<PieceMa
 }
 
 template <typename Join>
-void join(const tcv::Reading &reading, const char *what, int64_t count, size_t pieces, std::vector<Column> *columns,
-          vtkDataSetAttributes *target, Join &&join_one) {
+void join(const tcv::Reading &reading, const char *what, int64_t count, std::vector<Column> *columns, vtkDataSetAttributes *target,
+          Join &&join_one) {
   for (Column &column : *columns) {
     if (column.mixed) {
       tetcast_context_message(reading.context, TETCAST_SEVERITY_WARNING,
@@ -193,16 +193,29 @@ void join(const tcv::Reading &reading, const char *what, int64_t count, size_t p
                               what, column.name.c_str());
       continue;
     }
-    if (column.missing > 0) {
-      tetcast_context_message(reading.context, TETCAST_SEVERITY_WARNING, "%s: %s array '%s' is missing in %d of %zu pieces: they are transparent",
-                              reading.path.c_str(), what, column.name.c_str(), column.missing, pieces);
-    }
     make_whole(&column, count);
     join_one(&column);
     const int index = target->AddArray(column.whole);
     if (column.attribute >= 0 && !target->GetAbstractAttribute(column.attribute)) target->SetActiveAttribute(index, column.attribute);
     column.whole = nullptr; // `target` has it now
   }
+}
+
+void warn_of_missing(const tcv::Reading &reading, size_t pieces, const std::vector<Column> &points, const std::vector<Column> &cells) {
+  int64_t count = 0;
+  const Column *first = nullptr;
+  for (const auto *columns : {&points, &cells}) {
+    for (const Column &column : *columns) {
+      if (column.missing == 0 || column.mixed || column.numbers) continue;
+      first = first ? first : &column;
+      ++count;
+    }
+  }
+  if (!first) return;
+  tetcast_context_message(reading.context, TETCAST_SEVERITY_WARNING,
+                          "%s: %lld %s missing in some of the %zu pieces, which are transparent then, first '%s' in %d of them",
+                          reading.path.c_str(), static_cast<long long>(count), count == 1 ? "array is" : "arrays are", pieces,
+                          first->name.c_str(), first->missing);
 }
 
 } // namespace
@@ -227,10 +240,11 @@ void join_arrays(const Reading &reading, const std::vector<Piece> &pieces, const
                  Differences *differences) {
   auto points = columns_of(pieces, TETCAST_POINT);
   PointJoiner joiner(maps, grid->GetNumberOfPoints());
-  join(reading, "point", grid->GetNumberOfPoints(), pieces.size(), &points, grid->GetPointData(), [&](Column *column) { joiner.join(column); });
+  join(reading, "point", grid->GetNumberOfPoints(), &points, grid->GetPointData(), [&](Column *column) { joiner.join(column); });
   *differences = joiner.differences;
   auto cells = columns_of(pieces, TETCAST_CELL);
-  join(reading, "cell", grid->GetNumberOfCells(), pieces.size(), &cells, grid->GetCellData(), [&](Column *column) { join_cells(pieces, maps, column); });
+  join(reading, "cell", grid->GetNumberOfCells(), &cells, grid->GetCellData(), [&](Column *column) { join_cells(pieces, maps, column); });
+  warn_of_missing(reading, pieces.size(), points, cells);
 }
 
 } // namespace tcv

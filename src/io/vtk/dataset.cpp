@@ -42,7 +42,7 @@ static Contents read_pieces_of(const Reading &reading) {
   Contents contents;
   read_contents(reading, &contents);
   if (contents.times.empty()) choose_step(reading.path, *reading.desc, {}); // fails unless it is the only one
-  if (block && contents.pieces.empty()) {
+  if (block && (contents.pieces.empty() || contents.blocks.empty())) {
     std::string list;
     for (const std::string &name : contents.blocks) list += (list.empty() ? "there are: " : ", ") + name;
     fail(TETCAST_ERROR_ARGUMENT, "%s: has no block '%s' with a volume; %s", path, block, list.empty() ? "it is not of blocks" : list.c_str());

@@ -30,8 +30,8 @@ const struct {
     {nullptr, "", "vtk STRUCTURED_POINTS", tcv::read_legacy_structured, nullptr},
     {nullptr, "", "vtk RECTILINEAR_GRID", tcv::read_legacy_structured, nullptr},
     {nullptr, "", "vtk STRUCTURED_GRID", tcv::read_legacy_structured, nullptr},
-    {"ParaView's time series", ".pvd", "VTKFile Collection", tcv::read_pvd, nullptr},
-    {nullptr, ".series", "JSON", tcv::read_series, nullptr},
+    {"ParaView's time series", ".pvd .series", "VTKFile Collection", tcv::read_pvd, nullptr},
+    {nullptr, "", "JSON", tcv::read_series, nullptr},
     {"Exodus II", ".ex2 .exo .e .g", "NetCDF", tcv::read_exodus, "exodus"},
     {nullptr, "", "HDF5", tcv::read_exodus, "exodus"},
 };
