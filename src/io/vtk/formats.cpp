@@ -34,6 +34,12 @@ const struct {
     {nullptr, "", "JSON", tcv::read_series, nullptr},
     {"Exodus II", ".ex2 .exo .e .g", "NetCDF", tcv::read_exodus, "exodus"},
     {nullptr, "", "HDF5", tcv::read_exodus, "exodus"},
+    {"VTKHDF", ".vtkhdf .hdf", "HDF5 VTKHDF", tcv::read_vtkhdf, "hdf"},
+    {"EnSight 6 and Gold", ".case .encas", "EnSight", tcv::read_ensight, "ensight"},
+    {"CGNS", ".cgns", "HDF5 CGNS", tcv::read_cgns, "cgns"},
+    {nullptr, "", "ADF", tcv::read_cgns, "cgns"},
+    {"OpenFOAM", ".foam", "OpenFOAM", tcv::read_openfoam, "openfoam"},
+    {"TetGen", ".node .ele", "TetGen", tcv::read_tetgen, nullptr}, // by extension alone
 };
 
 bool one_of(const char *path, const char *extensions) {
@@ -54,7 +60,7 @@ namespace tcv {
 
 void read_contents(const Reading &reading, Contents *contents) {
   const char *path = reading.path.c_str();
-  const std::string kind = file_kind(file_head(path));
+  const std::string kind = has_extension(path, ".foam") ? "OpenFOAM" : file_kind(file_head(path)); // those are empty
   std::string extensions;
   for (const auto &format : formats) {
     if (format.name) extensions += (extensions.empty() ? "" : " ") + std::string(format.extensions);

@@ -108,4 +108,9 @@ void read_exodus(const Reading &reading, Contents *contents) {
   read_plugin(reading, "exodus", "Exodus (on NetCDF or HDF5)", contents);
 }
 
+void read_vtkhdf(const Reading &reading, Contents *contents) { read_plugin(reading, "hdf", "VTKHDF", contents); }
+void read_ensight(const Reading &reading, Contents *contents) { read_plugin(reading, "ensight", "EnSight", contents); }
+void read_cgns(const Reading &reading, Contents *contents) { read_plugin(reading, "cgns", "CGNS", contents); }
+void read_openfoam(const Reading &reading, Contents *contents) { read_plugin(reading, "openfoam", "OpenFOAM", contents); }
+
 } // namespace tcv
