@@ -11,11 +11,15 @@
 
 namespace tcv {
 
+void list_block(const std::string &block, Contents *contents) {
+  if (!block.empty() && (contents->blocks.empty() || contents->blocks.back() != block)) contents->blocks.push_back(block);
+}
+
 void add_grid(const Reading &reading, const std::string &block, vtkDataSet *dataset, Contents *contents) {
   if (!dataset) return;
   std::string place = reading.path;
   if (!block.empty()) {
-    if (contents->blocks.empty() || contents->blocks.back() != block) contents->blocks.push_back(block);
+    list_block(block, contents);
     if (!block_wanted(block, reading.desc->block)) return;
     place += ": block '" + block + "'";
   }

@@ -50,6 +50,9 @@ void read_part(const Reading &of, const std::string &path, const std::string &bl
 void add_object(const Reading &reading, vtkDataObject *object, Contents *contents);
 void add_grid(const Reading &reading, const std::string &block, vtkDataSet *grid, Contents *contents);
 
+// Adds the name of a block there is, of which the pieces come one after the other.
+void list_block(const std::string &block, Contents *contents);
+
 // Whether block `path` is asked for by --block `name` (NULL: all are): it has these components, one after the other.
 bool block_wanted(const std::string &path, const char *name);
 

@@ -74,7 +74,8 @@ void read_part(const Reading &of, const std::string &path, const std::string &bl
   if (of.depth >= 8) fail(TETCAST_ERROR_DATA, "%s: is listed by a file that lists a file …, eight times over", path.c_str());
   try {
     if (is_surface(file_kind(file_head(path.c_str())))) {
-      ++contents->surfaces;
+      list_block(block, contents);
+      contents->surfaces += block_wanted(block, of.desc->block);
       return;
     }
     read_contents({of.context, of.desc, path, block, of.depth + 1}, contents);

@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstring>
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -111,6 +112,11 @@ void read_exodus(const Reading &reading, Contents *contents) {
 void read_vtkhdf(const Reading &reading, Contents *contents) { read_plugin(reading, "hdf", "VTKHDF", contents); }
 void read_ensight(const Reading &reading, Contents *contents) { read_plugin(reading, "ensight", "EnSight", contents); }
 void read_cgns(const Reading &reading, Contents *contents) { read_plugin(reading, "cgns", "CGNS", contents); }
-void read_openfoam(const Reading &reading, Contents *contents) { read_plugin(reading, "openfoam", "OpenFOAM", contents); }
+
+void read_openfoam(const Reading &reading, Contents *contents) { // VTK would read the folder without looking for the file
+  const char *path = reading.path.c_str();
+  if (access(path, R_OK) != 0) fail(TETCAST_ERROR_IO, "%s: can't be opened: %s", path, std::strerror(errno));
+  read_plugin(reading, "openfoam", "OpenFOAM", contents);
+}
 
 } // namespace tcv

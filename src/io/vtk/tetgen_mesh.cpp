@@ -47,11 +47,11 @@ void begin_row(tcv::Scanner *scanner, int64_t i, int64_t count, const char *what
             static_cast<long long>(i == 0 ? 0 : *base + i));
 }
 
-Arrays make_arrays(const Header &header, const char *marker) {
+Arrays make_arrays(const Header &header, const std::string &name, const char *marker) {
   Arrays arrays;
   for (int64_t i = 0; i < header.attributes + (header.markers > 0); ++i) {
     arrays.push_back(vtkSmartPointer<vtkDoubleArray>::New());
-    arrays.back()->SetName(i < header.attributes ? ("attribute_" + std::to_string(i)).c_str() : marker);
+    arrays.back()->SetName(i < header.attributes ? (name + std::to_string(i)).c_str() : marker);
     arrays.back()->SetNumberOfTuples(header.count);
   }
   return arrays;
@@ -71,7 +71,7 @@ int64_t read_nodes(const std::string &path, vtkUnstructuredGrid *grid) {
   vtkNew<vtkDoubleArray> positions;
   positions->SetNumberOfComponents(3);
   positions->SetNumberOfTuples(header.count);
-  const Arrays arrays = make_arrays(header, "marker");
+  const Arrays arrays = make_arrays(header, "attribute_", "marker");
   int64_t base = 0;
   for (int64_t i = 0; i < header.count; ++i) {
     begin_row(&scanner, i, header.count, "points", &base);
@@ -101,7 +101,7 @@ void read_elements(const std::string &path, int64_t base, vtkUnstructuredGrid *g
   ends->SetValue(0, 0);
   Header plain = header;
   plain.markers = 0;
-  const Arrays arrays = make_arrays(plain, "");
+  const Arrays arrays = make_arrays(plain, "region_", "");
   int64_t first = 0;
   for (int64_t i = 0; i < header.count; ++i) {
     begin_row(&scanner, i, header.count, "tetrahedra", &first);
