@@ -2,7 +2,7 @@
 /* Files that are damaged, truncated or something else. */
 #include <fcntl.h>
 
-#include "common.h"
+#include "damage.h"
 
 #define POINTS                                                                                                         \
   "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\n"
@@ -169,28 +169,6 @@ static void test_silence(void **state) {
   assert_int_equal(second, TETCAST_ERROR_DATA);
 }
 
-/* Reads, and uses everything it gets. */
-static TetcastStatus use(Fixture *fixture, const char *path) {
-  TetcastDataset *dataset;
-  fixture->errors = 0;
-  const TetcastStatus status = tetcast_dataset_read(fixture->context, path, NULL, &dataset);
-  assert_int_equal(fixture->errors, status != TETCAST_OK);
-  if (status) return status;
-  TetcastMesh *mesh;
-  assert_int_equal(tetcast_dataset_mesh(dataset, &mesh), TETCAST_OK);
-  TetcastDatasetArray array;
-  for (int i = 0; tetcast_dataset_array(dataset, i, &array); ++i) {
-    TetcastField *field;
-    double range[2];
-    if (tetcast_dataset_field(dataset, array.name, &field, NULL)) continue;
-    tetcast_field_range(field, range, NULL);
-    tetcast_field_destroy(&field);
-  }
-  tetcast_mesh_destroy(&mesh);
-  tetcast_dataset_destroy(&dataset);
-  return TETCAST_OK;
-}
-
 static const char *const samples[] = {
     "encodings/ascii.vtu",
     "encodings/appraw_le_uint32_zlib.vtu",
@@ -227,12 +205,6 @@ static void test_truncation(void **state) {
     }
     free(bytes);
   }
-}
-
-/* Numbers of a fixed sequence. */
-static uint32_t next_random(uint32_t *seed) {
-  *seed = *seed * 1664525u + 1013904223u;
-  return *seed >> 8;
 }
 
 static void test_flipped_bits(void **state) {

@@ -3,11 +3,16 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <ctime>
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -48,20 +53,42 @@ static void limit_memory() {
 #endif
 }
 
-enum Trial { GOOD = 0, BAD = 1, OTHER_FORMAT = 2 };
+enum Trial { GOOD = 0, BAD = 1, OTHER_FORMAT = 2, ENDLESS = 3 };
 
-[[noreturn]] static void try_here(PluginRead read, const PluginRequest &request) {
+// How many bytes this process has read; -1 where the system does not say.
+static double bytes_read() {
+  char text[32] = ""; // "rchar: " comes first
+  const int file = open("/proc/self/io", O_RDONLY);
+  if (file < 0) return -1;
+  const ssize_t size = read(file, text, sizeof text - 1);
+  close(file);
+  return size > 7 && std::strncmp(text, "rchar: ", 7) == 0 ? std::strtod(text + 7, nullptr) : -1;
+}
+
+// VTK's readers look for words that a damaged file does not have, without end: they compute and read nothing any more. What a whole file
+// takes is far less than this. Called by the timer.
+static void stop_if_endless(int) {
+  const double bytes = bytes_read(), seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+  if (bytes >= 0 && seconds > 3 + 4e-6 * bytes) _exit(ENDLESS);
+}
+
+// `output` is a pipe, for what is printed: a library must not, and what makes a reader do so is damaged.
+[[noreturn]] static void try_here(PluginRead read, const PluginRequest &request, const int output[2]) {
   // A crash ends this process, whatever handlers the host has: they would go on with its work in here.
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
-  const int null = open("/dev/null", O_WRONLY);
-  dup2(null, STDOUT_FILENO);
-  dup2(null, STDERR_FILENO);
-  alarm(600);
+  dup2(output[1], STDOUT_FILENO);
+  dup2(output[1], STDERR_FILENO);
+  std::signal(SIGALRM, stop_if_endless);
+  const itimerval interval = {{0, 250000}, {0, 250000}};
+  setitimer(ITIMER_REAL, &interval, nullptr);
   limit_memory();
   try {
     PluginResult result;
     read(&request, &result);
-    _exit(result.object ? GOOD : OTHER_FORMAT);
+    int printed = 0;
+    std::fflush(stdout);
+    ioctl(output[0], FIONREAD, &printed);
+    _exit(!result.object ? OTHER_FORMAT : printed > 0 ? BAD : GOOD);
   } catch (const Failure &) {
     _exit(GOOD); // this library's own, as for a step there is not: will be heard of again
   } catch (...) {
@@ -72,15 +99,24 @@ enum Trial { GOOD = 0, BAD = 1, OTHER_FORMAT = 2 };
 // VTK's readers crash on some damaged files, and print about others: a child process tries first.
 static void try_in_child(PluginRead read, const PluginRequest &request, const char *format) {
   const char *path = request.path.c_str();
+  const Capture capture; // what is said through VTK is none of the printing
+  int output[2];
+  if (pipe2(output, O_NONBLOCK | O_CLOEXEC) != 0) fail(TETCAST_ERROR_MEMORY, "%s: no process could be started to try reading it", path);
+  std::fflush(stdout); // the child would print what is left in there
   const pid_t child = fork();
+  if (child == 0) try_here(read, request, output);
+  close(output[0]);
+  close(output[1]);
   if (child < 0) fail(TETCAST_ERROR_MEMORY, "%s: no process could be started to try reading it", path);
-  if (child == 0) try_here(read, request);
   int status;
   while (waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) fail(TETCAST_ERROR_IO, "%s: the process that tried reading it is lost", path);
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == OTHER_FORMAT) {
     fail(TETCAST_ERROR_UNSUPPORTED, "%s: is not a file of format %s, or damaged", path, format);
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == ENDLESS) {
+    fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: VTK's reader of %s files does not come to an end", path, format);
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != GOOD) {
     fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: VTK's reader of %s files fails on it", path, format);
