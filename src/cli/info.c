@@ -27,9 +27,9 @@ static const char help_text[] =
     "      --formats            lists the formats that can be read\n"
     "  -h, --help               this text\n"
     "\n"
-    "Ghosts are cells that another piece has as well, or blanked ones: they are left out. Values of cell arrays are counted per tetrahedron. In the list of health only the number of components and of\n"
-    "boundary faces are properties of every mesh; anything else is worth a look, but none keeps it from being "
-    "rendered.\n"
+    "Ghosts are cells that another piece has as well, or blanked ones: they are left out. Values of cell arrays\n"
+    "are counted per tetrahedron. In the list of health only the number of components and of boundary faces are\n"
+    "properties of every mesh; anything else is worth a look, but none keeps it from being rendered.\n"
     "\n"
     "Example:\n"
     "  tetcast info flow.vtu\n";

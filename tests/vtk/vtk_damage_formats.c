@@ -144,9 +144,9 @@ static void test_ensight(void **state) {
   TetcastDataset *dataset;
   if (tetcast_dataset_read(fixture->context, path, NULL, &dataset) == TETCAST_ERROR_UNSUPPORTED) skip();
   tetcast_dataset_destroy(&dataset);
-  damage(fixture, "a.case", "a.case", 30);
-  damage(fixture, "a.geo", "a.case", 30);
-  damage(fixture, "a.s0", "a.case", 10);
+  damage(fixture, "a.case", "a.case", 20);
+  damage(fixture, "a.geo", "a.case", 20);
+  damage(fixture, "a.s0", "a.case", 5);
 }
 
 static void test_openfoam(void **state) {
@@ -157,7 +157,7 @@ static void test_openfoam(void **state) {
   tetcast_dataset_destroy(&dataset);
   static const char *const names[] = {"system/controlDict", "constant/polyMesh/points", "constant/polyMesh/faces", "constant/polyMesh/owner",
                                       "constant/polyMesh/neighbour", "constant/polyMesh/boundary", "0/p"};
-  for (int i = 0; known && i < 7; ++i) damage(fixture, names[i], "case.foam", 15);
+  for (int i = 0; known && i < 7; ++i) damage(fixture, names[i], "case.foam", 8);
   remove_openfoam(fixture);
   if (!known) skip();
 }
