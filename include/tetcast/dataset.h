@@ -20,16 +20,39 @@ extern "C" {
  * Immutable; may be read from several threads at a time. */
 typedef struct TetcastDataset TetcastDataset;
 
-/* Reads a .vtu, .pvtu, legacy .vtk or Exodus (first time, all element blocks) file; the format is told by content, then extension. TETCAST_ERROR_IO: can't be opened. TETCAST_ERROR_DATA: truncated,
- * damaged, no mesh, no cells, only surface cells, non-finite coordinates, indices out of range. The reader library's own complaints
- * become part of the message. An Exodus file is tried in a child process first: VTK's reader of it crashes on some damaged ones. */
-TETCAST_API TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, TetcastDataset **dataset);
+/* What to read of a file. */
+typedef struct TetcastDatasetDesc {
+  const char *block; /* of a file of several blocks those of this name, or in the group of this name; NULL: all */
+  int64_t step;      /* of a file of several time steps this one, from 0; negative: from the end, -1 is the last */
+  double time;       /* the step at this time instead; NaN: none asked for */
+  double merge_tolerance; /* negative: only points of different pieces are merged, where they coincide exactly. Else all points no
+                             further than this apart, in the file's unit of length; 0: all that coincide exactly */
+} TetcastDatasetDesc;
+
+/* All blocks, the first step, no tolerance. */
+TETCAST_API TetcastDatasetDesc tetcast_dataset_desc_default(void);
+
+/* Format i = 0, 1, … of those that can be read: what it is called, and the usual ends of its files' names, e.g. ".ex2 .exo .e".
+ * Static storage; either may be NULL. False beyond the last. */
+TETCAST_API bool tetcast_dataset_format(int i, const char **name, const char **extensions);
+
+/* Reads a file in one of these formats; which one is told by content, then by extension. desc NULL: the default. TETCAST_ERROR_IO:
+ * can't be opened. TETCAST_ERROR_DATA: truncated, damaged, no mesh, no cells, only surface cells, non-finite coordinates, indices out of
+ * range. TETCAST_ERROR_ARGUMENT: has no such block or step; the message lists those there are. The reader library's own complaints become
+ * part of the message. Formats that VTK reads without care are tried in a child process first, which may crash.
+ *
+ * Structured grids become hexahedra. Of a file in pieces or blocks, ghost cells (vtkGhostType, vtkGhostLevels: copies of another piece's
+ * cells) and blanked ones are left out, as are pieces without volume, and coincident points of different pieces become one, so that the
+ * mesh is that of the whole. Where pieces disagree about a point's value, the piece first in the file wins that does not call the point
+ * a duplicate; where some pieces lack an array, it is NaN, which is drawn transparent. A warning says how often that was so. */
+TETCAST_API TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, const TetcastDatasetDesc *desc,
+                                               TetcastDataset **dataset);
 
 /* Frees the dataset and sets *dataset to NULL. NULL and pointer to NULL do nothing. */
 TETCAST_API void tetcast_dataset_destroy(TetcastDataset **dataset);
 
 /* How many cells of type i = 0, 1, … the file has, largest count first; name e.g. "tetrahedron", "hexahedron", "triangle", static
- * storage. False beyond the last. Counted as they are in the file, before anything is cut or left out. */
+ * storage. False beyond the last. Counted as they are in the file, before anything is cut, but without ghosts. */
 TETCAST_API bool tetcast_dataset_cell_type(const TetcastDataset *dataset, int i, const char **name, int64_t *count);
 
 typedef struct TetcastDatasetArray {
@@ -43,9 +66,31 @@ typedef struct TetcastDatasetArray {
 /* Describes numeric array i = 0, 1, …, in the file's order, point arrays first. False beyond the last. */
 TETCAST_API bool tetcast_dataset_array(const TetcastDataset *dataset, int i, TetcastDatasetArray *array);
 
-/* Number and bounds of the file's points, and of its cells of any kind. */
+/* Number of the file's points, and of its cells of any kind, of all pieces, before any are merged or left out. */
 TETCAST_API int64_t tetcast_dataset_point_count(const TetcastDataset *dataset);
 TETCAST_API int64_t tetcast_dataset_cell_count(const TetcastDataset *dataset);
+
+typedef struct TetcastDatasetPieces {
+  int64_t pieces;           /* that were put together; 1 for a file that is not in pieces */
+  int64_t surfaces;         /* pieces left out, as they hold no volumetric cell; not counted anywhere else */
+  int64_t ghost_cells;      /* cells left out: copies of other pieces' cells, or blanked */
+  int64_t ghost_points;     /* points left out that only those used */
+  int64_t merged_points;    /* points that became one with another */
+  int64_t differing_points; /* of those the ones at which a point array had several values */
+} TetcastDatasetPieces;
+
+/* What became of the pieces. NULL: all 0. */
+TETCAST_API TetcastDatasetPieces tetcast_dataset_pieces(const TetcastDataset *dataset);
+
+/* The name of block i = 0, 1, … of the file, e.g. "fluid/zone 1" within a group, whether it was read or not; valid while the dataset
+ * lives. NULL beyond the last, and for files without blocks. */
+TETCAST_API const char *tetcast_dataset_block(const TetcastDataset *dataset, int i);
+
+/* The time of step i = 0, 1, … of the file, ascending. False beyond the last, and for files without time steps. */
+TETCAST_API bool tetcast_dataset_time(const TetcastDataset *dataset, int64_t i, double *time);
+
+/* The step that was read; 0 for files without. */
+TETCAST_API int64_t tetcast_dataset_step(const TetcastDataset *dataset);
 
 /* The tetrahedra. Arrays may be the dataset's own: it must outlive the mesh, which the caller destroys. */
 TETCAST_API TetcastStatus tetcast_dataset_mesh(const TetcastDataset *dataset, TetcastMesh **mesh);

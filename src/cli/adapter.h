@@ -10,12 +10,19 @@
 /* X(result, name, parameters) for each function tetcast_NAME of an adapter; adapter.c checks them against the headers.
  */
 #define CLI_VTK_FUNCTIONS(X)                                                                                           \
-  X(TetcastStatus, dataset_read, (TetcastContext *, const char *, TetcastDataset **))                                  \
+  X(TetcastDatasetDesc, dataset_desc_default, (void))                                                                  \
+  X(bool, dataset_format, (int, const char **, const char **))                                                         \
+  X(TetcastStatus, dataset_read,                                                                                       \
+    (TetcastContext *, const char *, const TetcastDatasetDesc *, TetcastDataset **))                                   \
   X(void, dataset_destroy, (TetcastDataset **))                                                                        \
   X(bool, dataset_cell_type, (const TetcastDataset *, int, const char **, int64_t *))                                  \
   X(bool, dataset_array, (const TetcastDataset *, int, TetcastDatasetArray *))                                         \
   X(int64_t, dataset_point_count, (const TetcastDataset *))                                                            \
   X(int64_t, dataset_cell_count, (const TetcastDataset *))                                                             \
+  X(TetcastDatasetPieces, dataset_pieces, (const TetcastDataset *))                                                    \
+  X(const char *, dataset_block, (const TetcastDataset *, int))                                                        \
+  X(bool, dataset_time, (const TetcastDataset *, int64_t, double *))                                                   \
+  X(int64_t, dataset_step, (const TetcastDataset *))                                                                   \
   X(TetcastStatus, dataset_mesh, (const TetcastDataset *, TetcastMesh **))                                             \
   X(TetcastStatus, dataset_field, (const TetcastDataset *, const char *, TetcastField **, const char **))              \
   X(TetcastStatus, dataset_write,                                                                                      \

@@ -10,19 +10,26 @@
 #include <tetcast/tetcast.h>
 
 #include "cli.h"
+#include "render_options.h"
 
 static const char help_text[] =
-    "Usage: tetcast info INPUT [--json]\n"
+    "Usage: tetcast info INPUT [options]\n"
+    "       tetcast info --formats\n"
     "\n"
-    "Shows what is in a mesh file: cells by type, arrays with their ranges and numbers of NaN and infinite\n"
-    "values, bounds, and the health of the tetrahedra that the cells are cut into.\n"
+    "Shows what is in a mesh file: time steps, blocks, cells by type, arrays with their ranges and numbers of NaN\n"
+    "and infinite values, bounds, and the health of the tetrahedra that the cells are cut into.\n"
     "\n"
-    "      --json   as JSON, for scripts\n"
-    "  -h, --help   this text\n"
+    "      --json               as JSON, for scripts\n"
+    "      --block NAME         only this block, or group of blocks\n"
+    "      --time STEP          of a series this step, from 0, the default; -1 is the last; or t=TIME\n"
+    "      --merge-tolerance D  points no further apart become one; default: only those of different pieces, if they\n"
+    "                           coincide\n"
+    "      --formats            lists the formats that can be read\n"
+    "  -h, --help               this text\n"
     "\n"
-    "Values of cell arrays are counted per tetrahedron. In the list of health only the number of components and of\n"
-    "boundary faces are properties of every mesh; anything else is worth a look, but none keeps it from being "
-    "rendered.\n"
+    "Ghosts are cells that another piece has as well, or blanked ones: they are left out. Values of cell arrays\n"
+    "are counted per tetrahedron. In the list of health only the number of components and of boundary faces are\n"
+    "properties of every mesh; anything else is worth a look, but none keeps it from being rendered.\n"
     "\n"
     "Example:\n"
     "  tetcast info flow.vtu\n";
@@ -78,7 +85,7 @@ static TetcastStatus get_arrays(Info *info) {
 }
 
 static TetcastStatus get_info(Info *info, TetcastContext *context) {
-  TetcastStatus status = info->vtk->dataset_read(context, info->path, &info->dataset);
+  TetcastStatus status = info->vtk->dataset_read(context, info->path, &info->desc, &info->dataset);
   if (status == TETCAST_OK)
     status = get_arrays(info);
   TetcastMesh *mesh = NULL;
@@ -147,14 +154,51 @@ static void print_health(const TetcastMeshHealth *health) {
   printf("  %-20s %.9g\n", "boundary area", health->boundary_area);
 }
 
+static void print_steps(const Info *info) {
+  double time, last = 0;
+  int64_t steps = 0;
+  while (info->vtk->dataset_time(info->dataset, steps, &time)) {
+    last = time;
+    steps++;
+  }
+  if (steps == 0)
+    return;
+  const int64_t step = info->vtk->dataset_step(info->dataset);
+  double first = 0;
+  info->vtk->dataset_time(info->dataset, 0, &first);
+  info->vtk->dataset_time(info->dataset, step, &time);
+  printf("time steps    %" PRId64 ", from t=%.9g to t=%.9g; this is step %" PRId64 ", t=%.9g\n", steps, first, last, step, time);
+}
+
+static void print_blocks(const Info *info) {
+  for (int i = 0; info->vtk->dataset_block(info->dataset, i); i++)
+    printf("%-13s %s\n", i ? "" : "blocks", info->vtk->dataset_block(info->dataset, i));
+}
+
+/* Counts of what is rare are shown only where there is some. */
+static void print_some(const char *name, int64_t count, const char *unit) {
+  if (count > 0)
+    printf("  %-20s %" PRId64 "%s\n", name, count, unit);
+}
+
 static void print_text(const Info *info) {
   printf("file          %s\n", info->path);
+  print_steps(info);
+  print_blocks(info);
+  const TetcastDatasetPieces pieces = info->vtk->dataset_pieces(info->dataset);
+  if (pieces.pieces > 1 || pieces.surfaces > 0)
+    printf("pieces        %" PRId64 "\n", pieces.pieces);
+  print_some("without volume", pieces.surfaces, ", left out");
   printf("points        %" PRId64 "\n", info->vtk->dataset_point_count(info->dataset));
+  print_some("merged", pieces.merged_points, "");
+  print_some("of differing values", pieces.differing_points, "");
+  print_some("of ghosts alone", pieces.ghost_points, "");
   printf("cells         %" PRId64 "\n", info->vtk->dataset_cell_count(info->dataset));
   const char *name;
   int64_t count;
   for (int i = 0; info->vtk->dataset_cell_type(info->dataset, i, &name, &count); i++)
     printf("  %-20s %" PRId64 "\n", name, count);
+  print_some("ghost", pieces.ghost_cells, "");
   printf("tetrahedra    %" PRId64 "\n", info->tetrahedra);
   for (int i = 0; i < 3; i++)
     printf("%-13s %c [%.9g, %.9g]\n", i ? "" : "bounds", "xyz"[i], info -> bounds[2 * i], info -> bounds[2 * i + 1]);
@@ -162,41 +206,91 @@ static void print_text(const Info *info) {
   print_health(&info->health);
 }
 
-static int parse(int argc, char **argv, bool *json, const char **path) {
-  static const struct option words[] = {
-      {"json", no_argument, NULL, 'j'}, {"help", no_argument, NULL, 'h'}, {NULL, 0, NULL, 0}};
+static int print_formats(void) {
+  const CliVtk *vtk = cli_vtk();
+  if (!vtk)
+    return CLI_FAILED;
+  const char *name, *extensions;
+  for (int i = 0; vtk->dataset_format(i, &name, &extensions); i++)
+    printf("%-28s %s\n", name, extensions);
+  return cli_finish_output();
+}
+
+/* What the command line asks for. */
+typedef struct Request {
+  const char *path, *block, *time;
+  double merge_tolerance;
+  bool json, formats;
+} Request;
+
+static int parse(int argc, char **argv, Request *request) {
+  static const struct option words[] = {{"json", no_argument, NULL, 'j'},
+                                        {"formats", no_argument, NULL, 'f'},
+                                        {"block", required_argument, NULL, 'b'},
+                                        {"time", required_argument, NULL, 't'},
+                                        {"merge-tolerance", required_argument, NULL, 'm'},
+                                        {"help", no_argument, NULL, 'h'},
+                                        {NULL, 0, NULL, 0}};
+  *request = (Request){.merge_tolerance = -1};
+  TetcastDatasetDesc desc;
   optind = 0;
   int code;
   while ((code = getopt_long(argc, argv, ":h", words, NULL)) != -1) {
-    if (code == 'h') {
+    switch (code) {
+    case 'h':
       fputs(help_text, stdout);
       return cli_finish_output();
-    }
-    if (code != 'j')
+    case 'j':
+      request->json = true;
+      break;
+    case 'f':
+      request->formats = true;
+      break;
+    case 'b':
+      if (!*optarg)
+        return cli_usage_error("info", "--block: expected the name of a block");
+      request->block = optarg;
+      break;
+    case 't':
+      if (!render_option_dataset(NULL, optarg, -1, &desc))
+        return cli_usage_error("info", "--time %s: expected a step, from 0 (or -1, the last, and back), or t=TIME", optarg);
+      request->time = optarg;
+      break;
+    case 'm':
+      if (!cli_parse_number(optarg, &request->merge_tolerance) || request->merge_tolerance < 0)
+        return cli_usage_error("info", "--merge-tolerance %s: expected a distance, 0 or above", optarg);
+      break;
+    default:
       return cli_bad_option("info", code, argv);
-    *json = true;
+    }
   }
+  if (request->formats)
+    return optind < argc ? cli_usage_error("info", "--formats takes no input") : -1;
   if (optind == argc)
     return cli_usage_error("info", "no input given");
   if (optind + 1 < argc)
     return cli_usage_error("info", "more than one input: '%s' and '%s'", argv[optind], argv[optind + 1]);
-  *path = argv[optind];
+  request->path = argv[optind];
   return -1;
 }
 
 int tetcast_cli_info(int argc, char **argv) {
-  bool json = false;
-  Info info = {0};
-  int code = parse(argc, argv, &json, &info.path);
+  Request request;
+  int code = parse(argc, argv, &request);
   if (code >= 0)
     return code;
+  if (request.formats)
+    return print_formats();
+  Info info = {.path = request.path};
   TetcastContext *context = cli_context_create(0);
   info.vtk = context ? cli_vtk() : NULL;
   code = CLI_FAILED;
   if (info.vtk) {
+    info.desc = info.vtk->dataset_desc_default();
+    render_option_dataset(request.block, request.time, request.merge_tolerance, &info.desc);
     const TetcastStatus status = get_info(&info, context);
     if (status == TETCAST_OK) {
-      (json ? info_print_json : print_text)(&info);
+      (request.json ? info_print_json : print_text)(&info);
       code = cli_finish_output();
     } else {
       code = cli_failed(status);

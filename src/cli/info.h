@@ -28,6 +28,7 @@ typedef struct InfoArray {
 typedef struct Info {
   const char *path;
   const CliVtk *vtk;
+  TetcastDatasetDesc desc;
   TetcastDataset *dataset;
   int64_t tetrahedra, vertices;
   double bounds[6];

@@ -55,9 +55,35 @@ static json_t *health_object(const TetcastMeshHealth *health) {
   return object;
 }
 
+static json_t *pieces_object(const TetcastDatasetPieces *pieces) {
+  json_t *object = json_object();
+  json_object_set_new(object, "count", json_integer(pieces->pieces));
+  json_object_set_new(object, "without_volume", json_integer(pieces->surfaces));
+  json_object_set_new(object, "ghost_cells", json_integer(pieces->ghost_cells));
+  json_object_set_new(object, "ghost_points", json_integer(pieces->ghost_points));
+  json_object_set_new(object, "merged_points", json_integer(pieces->merged_points));
+  json_object_set_new(object, "differing_points", json_integer(pieces->differing_points));
+  return object;
+}
+
+static void set_steps_and_blocks(const Info *info, json_t *root) {
+  json_t *times = json_array(), *blocks = json_array();
+  double time;
+  for (int64_t i = 0; info->vtk->dataset_time(info->dataset, i, &time); i++)
+    json_array_append_new(times, json_real(time));
+  json_object_set_new(root, "times", times);
+  json_object_set_new(root, "step", json_integer(info->vtk->dataset_step(info->dataset)));
+  for (int i = 0; info->vtk->dataset_block(info->dataset, i); i++)
+    json_array_append_new(blocks, text_or_null(info->vtk->dataset_block(info->dataset, i)));
+  json_object_set_new(root, "blocks", blocks);
+  const TetcastDatasetPieces pieces = info->vtk->dataset_pieces(info->dataset);
+  json_object_set_new(root, "pieces", pieces_object(&pieces));
+}
+
 void info_print_json(const Info *info) {
   json_t *root = json_object();
   json_object_set_new(root, "file", text_or_null(info->path));
+  set_steps_and_blocks(info, root);
   json_object_set_new(root, "points", json_integer(info->vtk->dataset_point_count(info->dataset)));
   json_object_set_new(root, "cells", json_integer(info->vtk->dataset_cell_count(info->dataset)));
   json_t *types = json_object();

@@ -19,7 +19,7 @@
 
 typedef enum OptionKind { KIND_TEXT, KIND_PATH, KIND_NUMBERS, KIND_INTEGERS, KIND_CHOICE, KIND_FLAG } OptionKind;
 
-#define BIT(id)    (UINT32_C(1) << (id))
+#define BIT(id)    (UINT64_C(1) << (id))
 #define AT(member) offsetof(RenderOptions, member)
 
 /* Order of the library's enumerations. */
@@ -35,13 +35,17 @@ static const struct {
   int least, most;          /* how many numbers */
   double low, high;         /* bounds of each */
   const char *const *names; /* of a choice */
-  uint32_t excludes;
+  uint64_t excludes;
   RenderCommand only; /* of this command alone, 0: of both */
   const char *form; /* what is expected */
 } table[OPTION_COUNT] = {
     [OPTION_INPUT] = {"input", KIND_PATH, AT(input), .form = "expected a path"},
     [OPTION_OUTPUT] = {"output", KIND_PATH, AT(output), .form = "expected a path"},
     [OPTION_ARRAY] = {"array", KIND_TEXT, AT(array), .form = "expected NAME, NAME:component or NAME:mag"},
+    [OPTION_BLOCK] = {"block", KIND_TEXT, AT(block), .form = "expected the name of a block"},
+    [OPTION_TIME] = {"time", KIND_TEXT, AT(time), .form = "expected a step, from 0 (or -1, the last, and back), or t=TIME"},
+    [OPTION_MERGE_TOLERANCE] = {"merge-tolerance", KIND_NUMBERS, AT(merge_tolerance), 1, 1, 0, DBL_MAX,
+                                .form = "expected a distance, 0 or above"},
     [OPTION_TRANSFER] = {"transfer", KIND_PATH, AT(transfer), .excludes = BIT(OPTION_PRESET) | BIT(OPTION_RANGE),
                          .form = "expected a transfer function or the path of one"},
     [OPTION_PRESET] = {"preset", KIND_TEXT, AT(preset), .excludes = BIT(OPTION_TRANSFER), .form = "expected a name"},
@@ -96,7 +100,8 @@ static const char *command_name(const RenderOptions *options) {
 }
 
 RenderOptions render_options_default(RenderCommand command) {
-  RenderOptions options = {.command = command, .size = {1024, 768}, .samples = 1, .background = {1, 1, 1, 1}, .repeat = 1};
+  RenderOptions options = {.command = command, .size = {1024, 768}, .samples = 1, .background = {1, 1, 1, 1}, .repeat = 1,
+                           .merge_tolerance = -1};
   if (command == COMMAND_CONVERGE) {
     options.size[0] = 256;
     options.size[1] = 192;
@@ -171,6 +176,20 @@ bool render_option_integrator(const char *text, TetcastIntegrator *integrator, i
     return *n == number;
   }
   return false;
+}
+
+bool render_option_dataset(const char *block, const char *time, double merge_tolerance, TetcastDatasetDesc *desc) {
+  desc->block = block;
+  desc->merge_tolerance = merge_tolerance;
+  double number = 0;
+  if (!time)
+    return true;
+  if (!strncmp(time, "t=", 2))
+    return cli_parse_number(time + 2, &desc->time);
+  if (!cli_parse_number(time, &number) || number != floor(number) || fabs(number) > 1e15)
+    return false;
+  desc->step = (int64_t)number;
+  return true;
 }
 
 uint32_t render_option_channels(const char *text) {
@@ -274,6 +293,8 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
       reason = table[id].form;
     if (id == OPTION_CHANNELS && !render_option_channels(value->text))
       reason = table[id].form;
+    if (id == OPTION_TIME && !render_option_dataset(NULL, value->text, -1, &(TetcastDatasetDesc){0}))
+      reason = table[id].form;
     if (!reason) {
       char **text = at;
       free(*text);
@@ -375,7 +396,7 @@ static int check_use(const RenderOptions *options) {
     return -1;
   if (!options->refine)
     return cli_usage_error(command_name(options), "no input given");
-  const uint32_t used = BIT(OPTION_OUTPUT) | BIT(OPTION_THREADS) | BIT(OPTION_QUIET) | BIT(OPTION_REFINE) |
+  const uint64_t used = BIT(OPTION_OUTPUT) | BIT(OPTION_THREADS) | BIT(OPTION_QUIET) | BIT(OPTION_REFINE) |
                         BIT(OPTION_NO_PLOTS);
   for (int id = 0; id < OPTION_COUNT; id++)
     if (options->given & ~used & BIT(id))

@@ -9,12 +9,16 @@
 
 #include <jansson.h>
 
+#include <tetcast/dataset.h>
 #include <tetcast/scene.h>
 
 typedef enum OptionId {
   OPTION_INPUT,
   OPTION_OUTPUT,
   OPTION_ARRAY,
+  OPTION_BLOCK,
+  OPTION_TIME,
+  OPTION_MERGE_TOLERANCE,
   OPTION_TRANSFER,
   OPTION_PRESET,
   OPTION_RANGE,
@@ -49,13 +53,14 @@ typedef enum RenderCommand { COMMAND_RENDER = 1, COMMAND_CONVERGE = 2 } RenderCo
 typedef struct RenderOptions {
   RenderCommand command;
   /* NULL unless given */
-  char *input, *output, *array, *transfer, *preset, *integrator, *channels, *stats, *scene, *save_scene;
+  char *input, *output, *array, *block, *time, *transfer, *preset, *integrator, *channels, *stats, *scene, *save_scene;
   json_t *transfer_object; /* of a scene file; instead of transfer */
   double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], tolerance, threads, repeat;
+  double merge_tolerance; /* negative unless given */
   int opacity_model, traversal, isa, pixel_type; /* values of the library's enumerations */
   int quiet, refine, no_plots;
-  uint32_t given;  /* bit 1 << OptionId: has a value from command line or scene file */
-  uint32_t source; /* the same for the source being read alone */
+  uint64_t given;  /* bit 1 << OptionId: has a value from command line or scene file */
+  uint64_t source; /* the same for the source being read alone */
 } RenderOptions;
 
 /* A value as both sources can state it. */
@@ -81,6 +86,10 @@ const char *render_option_choice(OptionId id, int value);
 
 /* What --integrator names: "exact", or "midpoint:4" and the like. False: neither. */
 bool render_option_integrator(const char *text, TetcastIntegrator *integrator, int *n);
+
+/* What --block, --time and --merge-tolerance say (NULL, NULL, negative: nothing). False: the time is neither a step, e.g. "3", nor a
+ * time, e.g. "t=0.5". */
+bool render_option_dataset(const char *block, const char *time, double merge_tolerance, TetcastDatasetDesc *desc);
 
 /* The TetcastChannel bits of a list as --channels has it, 0: there is something else in it. */
 uint32_t render_option_channels(const char *text);

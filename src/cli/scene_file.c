@@ -129,9 +129,15 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
   int failed = json_object_set_new(scene, "input", json_string(input));
   failed |= json_object_set_new(scene, "output", json_string(cli_path_name(options->output)));
   failed |= json_object_set_new(scene, "array", json_string(array));
+  if (options->block)
+    failed |= json_object_set_new(scene, "block", json_string(options->block));
+  if (options->time)
+    json_object_set_new(scene, "time", json_string(options->time));
+  if (options->merge_tolerance >= 0)
+    json_object_set_new(scene, "merge_tolerance", json_real(options->merge_tolerance));
   free(input);
   if (failed) {
-    cli_error("cannot write '%s': the name of the input, the output or the array is not UTF-8", options->save_scene);
+    cli_error("cannot write '%s': the name of the input, the output, the array or the block is not UTF-8", options->save_scene);
     json_decref(scene);
     return false;
   }

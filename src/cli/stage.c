@@ -28,7 +28,9 @@ int stage_read(Stage *stage, const RenderOptions *options) {
   if (!vtk)
     return CLI_FAILED;
   const char *array = NULL;
-  TetcastStatus status = vtk->dataset_read(stage->context, options->input, &stage->dataset);
+  TetcastDatasetDesc desc = vtk->dataset_desc_default();
+  render_option_dataset(options->block, options->time, options->merge_tolerance, &desc);
+  TetcastStatus status = vtk->dataset_read(stage->context, options->input, &desc, &stage->dataset);
   if (status == TETCAST_OK)
     status = vtk->dataset_field(stage->dataset, options->array, &stage->field, &array);
   if (status == TETCAST_OK) {

@@ -26,7 +26,7 @@ static Clock read_mesh(const char *path) {
   TetcastField *field = NULL;
   Clock start = clock_now();
   must(tetcast_context_create(NULL, &context) == TETCAST_OK &&
-         tetcast_dataset_read(context, path, &dataset) == TETCAST_OK &&
+         tetcast_dataset_read(context, path, NULL, &dataset) == TETCAST_OK &&
          tetcast_dataset_mesh(dataset, &mesh) == TETCAST_OK &&
          tetcast_dataset_field(dataset, NULL, &field, NULL) == TETCAST_OK, "the mesh can't be read");
   Clock time = clock_since(start);

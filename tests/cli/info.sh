@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
+source=$(realpath "$(dirname "$0")/../..")
 . "$(dirname "$0")/lib.sh"
 needs vtk
 scalar='0 1 nan 2 3 4 6 5' vtu cube.vtu "$five_tetrahedra" 10
@@ -29,6 +30,49 @@ vtu hexahedron.vtu '0 1 2 3 4 5 6 7' 12
 accept info hexahedron.vtu
 contains 'hexahedron +1'
 contains 'volume +1$'
+
+# The README's list is that of a build with everything.
+accept info --formats
+contains 'VTK XML, unstructured grid +[.]vtu'
+readme=$source/README.md
+while read -r row; do
+  format=$(sed 's/   *.*//' <<<"$row") extensions=$(sed 's/.*   *//' <<<"$row")
+  checks=$((checks + 1))
+  grep -qxF "| $format | $extensions |" "$readme" || fail "no row '| $format | $extensions |' in README.md"
+done <<<"$output"
+refuse 2 'takes no input' info --formats cube.vtu
+
+# Steps, blocks, and points to be merged.
+vtu late.vtu "$five_tetrahedra" 10 "${cube//1/2}"
+cat >two.pvd <<'END'
+<VTKFile type="Collection" version="0.1"><Collection>
+<DataSet timestep="0.5" file="cube.vtu"/><DataSet timestep="2" file="late.vtu"/>
+</Collection></VTKFile>
+END
+accept info two.pvd
+contains 'volume +1$'
+accept info two.pvd --time=-1
+contains 'volume +8$'
+accept info two.pvd --time t=2 --json
+contains '"volume": 8.0,'
+contains '"step": 1,'
+refuse 1 'has no time step 2; there are steps 0 to 1' info two.pvd --time 2
+refuse 1 'has no time 1; the nearest is 0.5, of step 0' info two.pvd --time t=1
+refuse 2 'time' info two.pvd --time soon
+cat >two.vtm <<'END'
+<VTKFile type="vtkMultiBlockDataSet" version="1.0"><vtkMultiBlockDataSet>
+<Block name="body"><DataSet name="small" file="cube.vtu"/><DataSet name="large" file="late.vtu"/></Block>
+</vtkMultiBlockDataSet></VTKFile>
+END
+accept info two.vtm --block large
+contains 'volume +8$'
+contains 'body/small'
+refuse 1 'there are: body/small, body/large' info two.vtm --block medium
+accept info two.vtm --block body/small --json
+contains '"volume": 1.0,'
+accept info cube.vtu --merge-tolerance 0
+contains 'boundary faces +12'
+refuse 2 'merge-tolerance' info cube.vtu --merge-tolerance=-1
 
 if [ -c /dev/full ]; then
   "$tetcast" info cube.vtu >/dev/full 2>err && fail 'exit code 0 with a full standard output'

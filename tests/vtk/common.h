@@ -141,7 +141,7 @@ static inline TetcastDataset *read_good(Fixture *fixture, const char *path) {
   TetcastDataset *dataset = NULL;
   fixture->errors = 0;
   fixture->message[0] = '\0';
-  const TetcastStatus status = tetcast_dataset_read(fixture->context, path, &dataset);
+  const TetcastStatus status = tetcast_dataset_read(fixture->context, path, NULL, &dataset);
   if (status) print_error("%s\n", fixture->message);
   assert_int_equal(status, TETCAST_OK);
   assert_non_null(dataset);
@@ -161,7 +161,7 @@ static inline void assert_complaint(const Fixture *fixture, const char *path, co
 static inline void read_bad(Fixture *fixture, const char *path, TetcastStatus status, const char *words) {
   TetcastDataset *dataset = (TetcastDataset *)fixture;
   fixture->errors = 0;
-  assert_int_equal(tetcast_dataset_read(fixture->context, path, &dataset), status);
+  assert_int_equal(tetcast_dataset_read(fixture->context, path, NULL, &dataset), status);
   assert_null(dataset);
   assert_complaint(fixture, path, words);
 }

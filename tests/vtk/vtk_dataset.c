@@ -351,7 +351,7 @@ static void test_pieces(void **state) {
 static void read_any(Fixture *fixture, const char *path) {
   TetcastDataset *dataset;
   fixture->errors = 0;
-  const TetcastStatus status = tetcast_dataset_read(fixture->context, path, &dataset);
+  const TetcastStatus status = tetcast_dataset_read(fixture->context, path, NULL, &dataset);
   if (status) {
     print_message("%s\n", fixture->message);
     assert_complaint(fixture, path, ": ");
@@ -414,9 +414,9 @@ static void *read_many(void *shared) {
   for (int i = 0; i < 50; ++i) {
     TetcastDataset *dataset;
     fixture.errors = 0;
-    if (tetcast_dataset_read(fixture.context, good, &dataset) != TETCAST_OK || fixture.errors != 0) return "good";
+    if (tetcast_dataset_read(fixture.context, good, NULL, &dataset) != TETCAST_OK || fixture.errors != 0) return "good";
     tetcast_dataset_destroy(&dataset);
-    if (tetcast_dataset_read(fixture.context, bad, &dataset) != TETCAST_ERROR_DATA || fixture.errors != 1) return "bad";
+    if (tetcast_dataset_read(fixture.context, bad, NULL, &dataset) != TETCAST_ERROR_DATA || fixture.errors != 1) return "bad";
   }
   tetcast_context_destroy(&fixture.context);
   return NULL;

@@ -44,7 +44,7 @@ static void test_blocks(void **state) {
 static TetcastStatus attempt(Fixture *fixture, const void *bytes, size_t size) {
   TetcastDataset *dataset;
   fixture->errors = 0;
-  const TetcastStatus status = tetcast_dataset_read(fixture->context, file_of(fixture, "bad.ex2", bytes, size), &dataset);
+  const TetcastStatus status = tetcast_dataset_read(fixture->context, file_of(fixture, "bad.ex2", bytes, size), NULL, &dataset);
   assert_int_equal(fixture->errors, status != TETCAST_OK); /* one line, of one line: see remember() */
   tetcast_dataset_destroy(&dataset);
   return status;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -107,14 +108,28 @@ static std::string legacy_type(const std::string &head) {
   return keyword == "DATASET" ? upper_case(word_at(head, &at)) : keyword;
 }
 
+// "FORMAT", on a line of its own, and then "type: ensight".
+static bool is_ensight(const std::string &head) {
+  size_t at = begins_with(head, "FORMAT") ? 0 : head.find("\nFORMAT");
+  if (at == std::string::npos) return false;
+  at = head.find("type:", at);
+  return at != std::string::npos && upper_case(head.substr(at, 40)).find("ENSIGHT") != std::string::npos;
+}
+
 std::string file_kind(const std::string &head) {
   const size_t first = head.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (first == std::string::npos) return "";
   if (head[first] == '<') return head.find("<VTKFile") == std::string::npos ? "" : "VTKFile " + xml_type(head);
+  if (head[first] == '{') return "JSON";
   if (begins_with(head, "# vtk DataFile")) return "vtk " + legacy_type(head);
-  if (begins_with(head, "\x89HDF")) return "HDF5";
+  if (begins_with(head, "\x89HDF")) { // the names of what is at the top come early
+    const auto has = [&](const char *name) { return head.find(name) != std::string::npos; };
+    return has("VTKHDF") ? "HDF5 VTKHDF" : has("CGNSLibraryVersion") ? "HDF5 CGNS" : "HDF5";
+  }
+  if (begins_with(head, "@(#)ADF Database")) return "ADF";
   if (begins_with(head, "CDF\x01") || begins_with(head, "CDF\x02") || begins_with(head, "CDF\x05")) return "NetCDF";
   if (begins_with(head, "ply\n") || begins_with(head, "ply\r")) return "PLY";
+  if (is_ensight(head)) return "EnSight";
   size_t at = 0;
   const std::string word = word_at(head, &at);
   if (word.size() <= 8 && word.size() >= 3 && word.compare(word.size() - 3, 3, "OFF") == 0) return "OFF";
@@ -125,6 +140,21 @@ std::string file_kind(const std::string &head) {
 bool has_extension(const char *path, const char *extension) {
   const size_t length = std::strlen(path), tail = std::strlen(extension);
   return length > tail && strcasecmp(path + length - tail, extension) == 0;
+}
+
+bool is_surface(const std::string &kind) {
+  for (const char *surface : {"VTKFile PolyData", "VTKFile PPolyData", "vtk POLYDATA", "PLY", "STL", "OFF"}) {
+    if (kind == surface) return true;
+  }
+  return false;
+}
+
+double number_of(const std::string &text) {
+  size_t at = 0;
+  const std::string word = word_at(text, &at);
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size() && !word.empty() ? value : std::nan("");
 }
 
 void refuse(const char *path, const std::string &kind, const char *wanted, const char *extensions) {
@@ -140,8 +170,9 @@ void refuse(const char *path, const std::string &kind, const char *wanted, const
   }
   const size_t space = kind.find(' ');
   const bool vtk = space != std::string::npos;
-  fail(TETCAST_ERROR_DATA, "%s: holds %s%s, not %s", path, vtk ? kind.c_str() + space + 1 : kind.c_str(),
-       vtk ? "" : " data", wanted);
+  const bool fillable = std::strcmp(wanted, "a volume mesh") == 0 && is_surface(kind);
+  fail(TETCAST_ERROR_DATA, "%s: holds %s%s, not %s%s", path, vtk ? kind.c_str() + space + 1 : kind.c_str(), vtk ? "" : " data", wanted,
+       fillable ? ": a surface, which tetcast mesh fills with tetrahedra if it is closed" : "");
 }
 
 // ── what VTK hands out ──

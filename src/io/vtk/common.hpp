@@ -62,6 +62,17 @@ private:
   std::string error_, warning_;
 };
 
+// What `read` returns; fails if VTK complains while it runs, and passes on what VTK warns of.
+template <typename Read> auto captured(TetcastContext *context, const char *path, Read &&read) {
+  const Capture capture;
+  auto result = read();
+  if (capture.failed()) fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: %s", path, capture.error().c_str());
+  if (!capture.warning().empty()) {
+    tetcast_context_message(context, TETCAST_SEVERITY_WARNING, "%s: %s", path, capture.warning().c_str());
+  }
+  return result;
+}
+
 // Fails unless `path` is a readable, non-empty regular file. Returns its first bytes (64 KiB at most).
 std::string file_head(const char *path);
 std::string file_contents(const char *path);
@@ -70,6 +81,8 @@ int64_t file_size(const char *path); // 0 if there is no such file
 // What the content says the file is: "VTKFile UnstructuredGrid", "vtk POLYDATA", "PLY", "OFF", "STL", "HDF5", "NetCDF",
 // "" …
 std::string file_kind(const std::string &head);
+bool is_surface(const std::string &kind);
+double number_of(const std::string &text); // decimal, the same in every locale; NaN: is none
 bool has_extension(const char *path, const char *extension); // ".vtu", in any case of letters
 
 // Refuses a kind of content that no reader of this call takes.

@@ -1,56 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reading files of volume meshes.
 #include "dataset.hpp"
+#include "attributes.hpp"
 #include "common.hpp"
-#include "files.hpp"
 
+#include <cmath>
+#include <limits>
 #include <memory>
 
-#include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
-#include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkUnstructuredGrid.h>
 
 using namespace tcv;
 
-using Grid = vtkSmartPointer<vtkUnstructuredGrid>;
-
-// A format is one row. Content tells (file_kind); the extension only where content is silent.
-static const struct {
-  const char *kind;
-  const char *extension;
-  Grid (*read)(const char *path);
-} readers[] = {
-    {"VTKFile UnstructuredGrid", ".vtu", read_vtu},
-    {"VTKFile PUnstructuredGrid", ".pvtu", read_pvtu},
-    {"vtk UNSTRUCTURED_GRID", ".vtk", read_legacy_grid},
-    {"NetCDF", ".ex2", read_exodus},
-    {"HDF5", ".exo", read_exodus},
-};
-
-static Grid read_grid(TetcastContext *context, const char *path) {
-  const std::string kind = file_kind(file_head(path));
-  std::string extensions;
-  for (const auto &reader : readers) {
-    extensions += (extensions.empty() ? "" : ", ") + std::string(reader.extension);
-    if (kind.empty() ? !has_extension(path, reader.extension) : kind != reader.kind) continue;
-    const Capture capture;
-    const Grid grid = reader.read(path);
-    if (capture.failed()) fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: %s", path, capture.error().c_str());
-    if (!capture.warning().empty()) {
-      tetcast_context_message(context, TETCAST_SEVERITY_WARNING, "%s: %s", path, capture.warning().c_str());
-    }
-    return grid;
-  }
-  refuse(path, kind, "a volume mesh", extensions.c_str());
-}
-
-static void take_points(const char *path, vtkUnstructuredGrid *grid, TetcastDataset *dataset) {
-  if (!grid || grid->GetNumberOfCells() == 0) fail(TETCAST_ERROR_DATA, "%s: holds no cells", path);
-  if (grid->GetNumberOfPoints() == 0) fail(TETCAST_ERROR_DATA, "%s: holds no points", path);
-  check_points(path, grid->GetPoints());
+static void take_points(vtkUnstructuredGrid *grid, TetcastDataset *dataset) {
   dataset->points = grid->GetPoints()->GetData();
   const TetcastType type = type_of(dataset->points);
   if (type != TETCAST_TYPE_FLOAT32 && type != TETCAST_TYPE_FLOAT64) {
@@ -58,61 +23,88 @@ static void take_points(const char *path, vtkUnstructuredGrid *grid, TetcastData
     doubles->DeepCopy(dataset->points);
     dataset->points = doubles;
   }
-  dataset->point_count = grid->GetNumberOfPoints();
-  dataset->cell_count = grid->GetNumberOfCells();
 }
 
 static void take_arrays(const char *path, vtkDataSetAttributes *attributes, TetcastAssociation association,
                         int64_t count, std::vector<Array> *arrays) {
-  const char *what = association == TETCAST_POINT ? "point" : "cell";
   for (int i = 0; i < attributes->GetNumberOfArrays(); ++i) {
     vtkDataArray *data = attributes->GetArray(i); // null for strings
     if (!data || data->GetNumberOfComponents() < 1) continue;
     const std::string name = data->GetName() ? data->GetName() : "";
-    if (name == "vtkGhostType") continue;
-    if (data->GetNumberOfTuples() != count) {
-      fail(TETCAST_ERROR_DATA, "%s: %s array '%s' has %lld values for %lld %ss", path, what, name.c_str(),
-           static_cast<long long>(data->GetNumberOfTuples()), static_cast<long long>(count), what);
-    }
-    const bool number = data == attributes->GetGlobalIds() || data == attributes->GetPedigreeIds() ||
-                        name == "vtkOriginalPointIds" || name == "vtkOriginalCellIds";
-    arrays->push_back({name, association, data, data == attributes->GetScalars(), number});
+    if (is_ghost_array(name)) continue;
+    check_length(path, association == TETCAST_POINT ? "point" : "cell", name, data, count);
+    arrays->push_back({name, association, data, data == attributes->GetScalars(), numbers_things(attributes, data)});
   }
 }
 
-static void read_dataset(TetcastContext *context, const char *path, TetcastDataset *dataset) {
-  const Grid grid = read_grid(context, path);
+static Contents read_pieces_of(const Reading &reading) {
+  const char *path = reading.path.c_str(), *block = reading.desc->block;
+  Contents contents;
+  read_contents(reading, &contents);
+  if (contents.times.empty()) choose_step(reading.path, *reading.desc, {}); // fails unless it is the only one
+  if (block && (contents.pieces.empty() || contents.blocks.empty())) {
+    std::string list;
+    for (const std::string &name : contents.blocks) list += (list.empty() ? "there are: " : ", ") + name;
+    fail(TETCAST_ERROR_ARGUMENT, "%s: has no block '%s' with a volume; %s", path, block, list.empty() ? "it is not of blocks" : list.c_str());
+  }
+  if (contents.pieces.empty()) {
+    fail(TETCAST_ERROR_DATA, "%s: %s", path, contents.surfaces > 0 ? "holds no volume, only surfaces or flat grids" : "holds no cells");
+  }
+  return contents;
+}
+
+static void warn_of_cells(const TetcastDataset *dataset, int64_t count, const char *text) {
+  if (count == 0) return;
+  tetcast_context_message(dataset->context, TETCAST_SEVERITY_WARNING, "%s: %lld cells %s", dataset->path.c_str(),
+                          static_cast<long long>(count), text);
+}
+
+static void read_dataset(TetcastContext *context, const char *path, const TetcastDatasetDesc &desc, TetcastDataset *dataset) {
+  const Reading reading = {context, &desc, path, "", 0};
+  Contents contents = read_pieces_of(reading);
   dataset->context = context;
   dataset->path = path;
-  take_points(path, grid, dataset);
-  check_cells(path, grid->GetCells(), dataset->point_count, "cell");
+  dataset->pieces.surfaces = contents.surfaces;
+  dataset->blocks = std::move(contents.blocks);
+  dataset->times = std::move(contents.times);
+  dataset->step = contents.step;
+  const Grid grid = unite(reading, &contents.pieces, &dataset->pieces);
+  const int64_t points = grid->GetNumberOfPoints(), cells = grid->GetNumberOfCells();
+  if (cells == 0) fail(TETCAST_ERROR_DATA, "%s: holds no cells%s", path, dataset->pieces.ghost_cells > 0 ? " but ghosts" : "");
+  dataset->point_count = points + dataset->pieces.ghost_points + dataset->pieces.merged_points;
+  dataset->cell_count = cells + dataset->pieces.ghost_cells;
+  take_points(grid, dataset);
   {
     const Capture capture; // cutting may complain as well
     make_tetrahedra(path, grid, &dataset->tetrahedra);
   }
-  if (dataset->tetrahedra.uncut > 0) {
-    tetcast_context_message(context, TETCAST_SEVERITY_WARNING,
-                            "%s: %lld cells can't be cut into tetrahedra and are left out", path,
-                            static_cast<long long>(dataset->tetrahedra.uncut));
-  }
-  if (dataset->tetrahedra.oversized > 0) {
-    tetcast_context_message(context, TETCAST_SEVERITY_WARNING,
-                            "%s: %lld cells have more points than their type has: the last ones of each are ignored",
-                            path, static_cast<long long>(dataset->tetrahedra.oversized));
-  }
-  take_arrays(path, grid->GetPointData(), TETCAST_POINT, dataset->point_count, &dataset->arrays);
-  take_arrays(path, grid->GetCellData(), TETCAST_CELL, dataset->cell_count, &dataset->arrays);
+  warn_of_cells(dataset, dataset->tetrahedra.uncut, "can't be cut into tetrahedra and are left out");
+  warn_of_cells(dataset, dataset->tetrahedra.oversized, "have more points than their type has: the last ones of each are ignored");
+  take_arrays(path, grid->GetPointData(), TETCAST_POINT, points, &dataset->arrays);
+  take_arrays(path, grid->GetCellData(), TETCAST_CELL, cells, &dataset->arrays);
 }
 
-TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, TetcastDataset **dataset) {
+TetcastDatasetDesc tetcast_dataset_desc_default(void) {
+  TetcastDatasetDesc desc = {};
+  desc.time = std::numeric_limits<double>::quiet_NaN();
+  desc.merge_tolerance = -1;
+  return desc;
+}
+
+TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, const TetcastDatasetDesc *desc, TetcastDataset **dataset) {
   if (dataset) *dataset = nullptr;
   if (!context || !path || !dataset) {
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
                                  "tetcast_dataset_read: context, path and dataset must not be NULL");
   }
+  const TetcastDatasetDesc all = desc ? *desc : tetcast_dataset_desc_default();
+  if (std::isinf(all.time) || !std::isfinite(all.merge_tolerance)) {
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "tetcast_dataset_read: time %g or merge_tolerance %g is not a finite number",
+                                 all.time, all.merge_tolerance);
+  }
   return fence(context, path, [&] {
     auto result = std::make_unique<TetcastDataset>();
-    read_dataset(context, path, result.get());
+    read_dataset(context, path, all, result.get());
     *dataset = result.release();
   });
 }
@@ -144,6 +136,21 @@ bool tetcast_dataset_array(const TetcastDataset *dataset, int i, TetcastDatasetA
 
 int64_t tetcast_dataset_point_count(const TetcastDataset *dataset) { return dataset ? dataset->point_count : 0; }
 int64_t tetcast_dataset_cell_count(const TetcastDataset *dataset) { return dataset ? dataset->cell_count : 0; }
+
+
+TetcastDatasetPieces tetcast_dataset_pieces(const TetcastDataset *dataset) { return dataset ? dataset->pieces : TetcastDatasetPieces(); }
+
+const char *tetcast_dataset_block(const TetcastDataset *dataset, int i) {
+  return dataset && i >= 0 && static_cast<size_t>(i) < dataset->blocks.size() ? dataset->blocks[static_cast<size_t>(i)].c_str() : nullptr;
+}
+
+bool tetcast_dataset_time(const TetcastDataset *dataset, int64_t i, double *time) {
+  if (!dataset || i < 0 || static_cast<size_t>(i) >= dataset->times.size()) return false;
+  if (time) *time = dataset->times[static_cast<size_t>(i)];
+  return true;
+}
+
+int64_t tetcast_dataset_step(const TetcastDataset *dataset) { return dataset ? dataset->step : 0; }
 
 TetcastStatus tetcast_dataset_mesh(const TetcastDataset *dataset, TetcastMesh **mesh) {
   if (mesh) *mesh = nullptr;

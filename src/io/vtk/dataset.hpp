@@ -13,6 +13,7 @@
 #include <tetcast/dataset.h>
 
 #include "cells.hpp"
+#include "contents.hpp"
 
 namespace tcv {
 
@@ -30,7 +31,11 @@ struct Array {
 struct TetcastDataset {
   TetcastContext *context = nullptr;
   std::string path;
-  int64_t point_count = 0, cell_count = 0;
+  int64_t point_count = 0, cell_count = 0; // of the file
+  TetcastDatasetPieces pieces = {};
+  std::vector<std::string> blocks;
+  std::vector<double> times;
+  int64_t step = 0;
   vtkSmartPointer<vtkDataArray> points; // float32 or float64
   tcv::Tetrahedra tetrahedra;
   std::vector<tcv::Array> arrays;          // point arrays first

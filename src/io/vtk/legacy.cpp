@@ -3,6 +3,7 @@
 // its functions for single words and arrays are sound once the counts are, and do the work here.
 #include "common.hpp"
 #include "files.hpp"
+#include "formats.hpp"
 
 #include <cstdio>
 #include <cstring>
@@ -12,10 +13,14 @@
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDataReader.h>
+#include <vtkDoubleArray.h>
 #include <vtkIdTypeArray.h>
+#include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkStructuredGrid.h>
 #include <vtkUnsignedCharArray.h>
 
 namespace {
@@ -30,11 +35,11 @@ public:
 
 class LegacyFile {
 public:
-  LegacyFile(const char *path, const char *type) : path_(path), size_(tcv::file_size(path)) {
-    if (!reader_->OpenVTKFile(path) || !reader_->ReadHeader(path) || !next() || !is("dataset") || !next() ||
-        !is(type)) {
-      damaged("the header");
-    }
+  explicit LegacyFile(const char *path) : path_(path), size_(tcv::file_size(path)) {
+    if (!reader_->OpenVTKFile(path) || !reader_->ReadHeader(path) || !next() || !is("dataset") || !next()) damaged("the header");
+  }
+  LegacyFile(const char *path, const char *type) : LegacyFile(path) {
+    if (!is(type)) damaged("the header");
   }
   ~LegacyFile() { reader_->CloseVTKFile(); }
   LegacyFile(const LegacyFile &) = delete;
@@ -49,7 +54,7 @@ public:
       read_field(nullptr);
     } else if (is("metadata")) {
       skip_metadata();
-    } else if (is("points")) {
+    } else if (is("points") && dataset) {
       const int64_t points = count("POINTS");
       if (!reader_->ReadPointCoordinates(dataset, points)) damaged("POINTS");
     } else {
@@ -110,6 +115,35 @@ public:
       }
       result->SetValue(i, static_cast<unsigned char>(type));
     }
+    return result;
+  }
+
+  // Of structured grids: DIMENSIONS, and what is evenly spaced.
+  void dimensions(int result[3]) {
+    int64_t points = 1;
+    for (int k = 0; k < 3; ++k) {
+      const int64_t value = count("DIMENSIONS");
+      points = value <= 0 || points > 4096 * size_ / value ? 0 : points * value;
+      result[k] = static_cast<int>(value);
+      if (points == 0 || value > INT32_MAX) {
+        tcv::fail(TETCAST_ERROR_DATA, "%s: DIMENSIONS claim more points than the file can hold, or none", path_);
+      }
+    }
+  }
+  void numbers(const char *section, double result[3]) {
+    for (int k = 0; k < 3; ++k) {
+      if (!reader_->Read(result + k)) damaged(section);
+    }
+  }
+  vtkSmartPointer<vtkDataArray> coordinates(const char *section, int64_t wanted) {
+    const int64_t values_here = count(section);
+    if (values_here != wanted) {
+      tcv::fail(TETCAST_ERROR_DATA, "%s: %s are %lld, not %lld", path_, section, static_cast<long long>(values_here),
+                static_cast<long long>(wanted));
+    }
+    const AbstractArray array = values(word(section), wanted, 1);
+    vtkSmartPointer<vtkDataArray> result = vtkDataArray::SafeDownCast(array);
+    if (!result) damaged(section);
     return result;
   }
 
@@ -292,11 +326,7 @@ void check_face_streams(const char *path, vtkUnsignedCharArray *types, vtkCellAr
 // Offsets within the list; indices are checked by whoever uses them.
 void check_offsets(const char *path, vtkCellArray *cells) { tcv::check_cells(path, cells, INT64_MAX, "cell"); }
 
-} // namespace
-
-namespace tcv {
-
-vtkSmartPointer<vtkUnstructuredGrid> read_legacy_grid(const char *path) {
+vtkSmartPointer<vtkUnstructuredGrid> read_grid(const char *path) {
   LegacyFile file(path, "unstructured_grid");
   auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   CellArray cells;
@@ -308,9 +338,9 @@ vtkSmartPointer<vtkUnstructuredGrid> read_legacy_grid(const char *path) {
     } else if (file.is("cell_types")) {
       types = file.cell_types();
       if (!cells || cells->GetNumberOfCells() != types->GetNumberOfValues()) {
-        fail(TETCAST_ERROR_DATA, "%s: CELL_TYPES of %lld cells, but CELLS has %lld", path,
-             static_cast<long long>(types->GetNumberOfValues()),
-             static_cast<long long>(cells ? cells->GetNumberOfCells() : 0));
+        tcv::fail(TETCAST_ERROR_DATA, "%s: CELL_TYPES of %lld cells, but CELLS has %lld", path,
+                  static_cast<long long>(types->GetNumberOfValues()),
+                  static_cast<long long>(cells ? cells->GetNumberOfCells() : 0));
       }
       // Only now the grid knows its cells: polyhedra hide other numbers in their list of points.
       check_offsets(path, cells);
@@ -321,8 +351,91 @@ vtkSmartPointer<vtkUnstructuredGrid> read_legacy_grid(const char *path) {
       break;
     }
   }
-  if (cells && !types) fail(TETCAST_ERROR_DATA, "%s: truncated: there are CELLS, but no CELL_TYPES", path);
+  if (cells && !types) tcv::fail(TETCAST_ERROR_DATA, "%s: truncated: there are CELLS, but no CELL_TYPES", path);
   return grid;
+}
+
+vtkSmartPointer<vtkDataSet> read_image(LegacyFile *file) {
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  while (file->next()) {
+    double numbers[3];
+    int dimensions[3];
+    if (file->common_section(nullptr)) continue;
+    if (file->is("dimensions")) {
+      file->dimensions(dimensions);
+      image->SetDimensions(dimensions);
+    } else if (file->is("origin")) {
+      file->numbers("ORIGIN", numbers);
+      image->SetOrigin(numbers);
+    } else if (file->is("spacing") || file->is("aspect_ratio")) {
+      file->numbers("SPACING", numbers);
+      image->SetSpacing(numbers);
+    } else {
+      file->attributes(image);
+      break;
+    }
+  }
+  return image;
+}
+
+vtkSmartPointer<vtkDataSet> read_rectilinear(LegacyFile *file) {
+  auto grid = vtkSmartPointer<vtkRectilinearGrid>::New();
+  int dimensions[3] = {0, 0, 0};
+  while (file->next()) {
+    if (file->common_section(nullptr)) continue;
+    if (file->is("dimensions")) {
+      file->dimensions(dimensions);
+      grid->SetDimensions(dimensions);
+    } else if (file->is("x_coordinates")) {
+      grid->SetXCoordinates(file->coordinates("X_COORDINATES", dimensions[0]));
+    } else if (file->is("y_coordinates")) {
+      grid->SetYCoordinates(file->coordinates("Y_COORDINATES", dimensions[1]));
+    } else if (file->is("z_coordinates")) {
+      grid->SetZCoordinates(file->coordinates("Z_COORDINATES", dimensions[2]));
+    } else {
+      file->attributes(grid);
+      break;
+    }
+  }
+  vtkDataArray *const axes[3] = {grid->GetXCoordinates(), grid->GetYCoordinates(), grid->GetZCoordinates()};
+  for (int k = 0; k < 3; ++k) { // VTK has one of a single value where there is none
+    if (axes[k]->GetNumberOfTuples() != dimensions[k]) file->damaged("the list of coordinates");
+  }
+  return grid;
+}
+
+vtkSmartPointer<vtkDataSet> read_structured(LegacyFile *file) {
+  auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
+  int dimensions[3];
+  while (file->next()) {
+    if (file->common_section(grid)) continue;
+    if (file->is("dimensions")) {
+      file->dimensions(dimensions);
+      grid->SetDimensions(dimensions);
+    } else {
+      file->attributes(grid);
+      break;
+    }
+  }
+  return grid;
+}
+
+} // namespace
+
+namespace tcv {
+
+void read_legacy_grid(const Reading &reading, Contents *contents) {
+  const auto grid = captured(reading.context, reading.path.c_str(), [&] { return read_grid(reading.path.c_str()); });
+  add_grid(reading, reading.block, grid, contents);
+}
+
+void read_legacy_structured(const Reading &reading, Contents *contents) {
+  const auto grid = captured(reading.context, reading.path.c_str(), [&] {
+    LegacyFile file(reading.path.c_str());
+    if (file.is("rectilinear_grid")) return read_rectilinear(&file);
+    return file.is("structured_grid") ? read_structured(&file) : read_image(&file);
+  });
+  add_grid(reading, reading.block, grid, contents);
 }
 
 vtkSmartPointer<vtkPolyData> read_legacy_surface(const char *path) {

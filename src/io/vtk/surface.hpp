@@ -27,6 +27,7 @@ public:
 
   bool next_line();   // to the next line that is neither empty nor a comment (#); false at the end
   std::string word(); // the next of this line; "" at its end
+  bool at_end();      // of the line
   double number(const char *what);
   int64_t integer(const char *what);
   int line() const { return line_; }

@@ -32,6 +32,11 @@ std::string Scanner::word() {
   return std::string(start, word_);
 }
 
+bool Scanner::at_end() {
+  while (word_ < line_end_ && static_cast<unsigned char>(*word_) <= ' ') ++word_;
+  return word_ == line_end_;
+}
+
 double Scanner::number(const char *what) {
   const std::string text = word();
   const char *first = text.c_str() + (text[0] == '+'), *last = text.c_str() + text.size();

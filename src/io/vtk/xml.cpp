@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common.hpp"
 #include "files.hpp"
+#include "formats.hpp"
 
 #include <algorithm>
 #include <cstring>
 
 #include <vtkIdTypeArray.h>
+#include <vtkImageData.h>
 #include <vtkInputStream.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkStructuredGrid.h>
 #include <vtkXMLDataElement.h>
 #include <vtkXMLDataParser.h>
-#include <vtkXMLPUnstructuredGridReader.h>
+#include <vtkXMLImageDataReader.h>
 #include <vtkXMLPolyDataReader.h>
+#include <vtkXMLRectilinearGridReader.h>
+#include <vtkXMLStructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
 namespace {
@@ -88,11 +94,8 @@ private:
   }
 };
 
-// VTK allocates and clears what a header claims before it looks for the data, and takes negative counts as they are.
-template <typename Base> class Checked : public Base {
-public:
-  static Checked *New() { VTK_STANDARD_NEW_BODY(Checked); }
-
+// What VTK leaves unchecked in readers of every kind.
+template <typename Base> class Guarded : public Base {
 protected:
   void CreateXMLParser() override {
     if (this->XMLParser) this->DestroyXMLParser();
@@ -103,17 +106,6 @@ protected:
     const int result = Base::ReadVTKFile(element);
     this->FieldDataElement = nullptr; // notes on the whole file: not wanted, and VTK crashes on those of unknown type
     return result;
-  }
-
-  int ReadPiece(vtkXMLDataElement *element) override {
-    if (!Base::ReadPiece(element)) return 0;
-    const vtkIdType points = this->GetNumberOfPointsInPiece(this->Piece),
-                    cells = this->GetNumberOfCellsInPiece(this->Piece);
-    const int64_t limit = 256 * tcv::file_size(this->GetFileName()); // compressed, the best mesh stays far below
-    if (points >= 0 && cells >= 0 && points <= limit && cells <= limit) return 1;
-    vtkErrorMacro("piece " << this->Piece << " claims " << points << " points and " << cells
-                           << " cells, which the file can't hold");
-    return 0;
   }
 
   int ReadArrayValues(vtkXMLDataElement *element, vtkIdType index, vtkAbstractArray *array, vtkIdType start,
@@ -129,6 +121,68 @@ protected:
       return 0;
     }
     return Base::ReadArrayValues(element, index, array, start, count, type);
+  }
+};
+
+// VTK allocates and clears what a header claims before it looks for the data, and takes negative counts as they are.
+template <typename Base> class Checked : public Guarded<Base> {
+public:
+  static Checked *New() { VTK_STANDARD_NEW_BODY(Checked); }
+
+  int pieces() const { return this->NumberOfPieces; }
+
+protected:
+  int ReadPiece(vtkXMLDataElement *element) override {
+    if (!Base::ReadPiece(element)) return 0;
+    const vtkIdType points = this->GetNumberOfPointsInPiece(this->Piece),
+                    cells = this->GetNumberOfCellsInPiece(this->Piece);
+    const int64_t limit = 256 * tcv::file_size(this->GetFileName()); // compressed, the best mesh stays far below
+    if (points >= 0 && cells >= 0 && points <= limit && cells <= limit) return 1;
+    vtkErrorMacro("piece " << this->Piece << " claims " << points << " points and " << cells
+                           << " cells, which the file can't hold");
+    return 0;
+  }
+};
+
+// Structured grids: extents instead of counts, and pieces that have to cover the whole.
+template <typename Base> class Structured : public Guarded<Base> {
+public:
+  static Structured *New() { VTK_STANDARD_NEW_BODY(Structured); }
+
+protected:
+  int ReadPrimaryElement(vtkXMLDataElement *element) override {
+    if (!Base::ReadPrimaryElement(element)) return 0;
+    // Before any piece is read: an array of equal values is compressed to a thousandth and less.
+    const double limit = 4096.0 * static_cast<double>(tcv::file_size(this->GetFileName()));
+    const double points = size(this->WholeExtent, 1);
+    const double cells = size(this->WholeExtent, 0);
+    if (points < 1 || points > limit) {
+      vtkErrorMacro("the whole extent is of " << points << " points, which the file can't hold");
+      return 0;
+    }
+    double covered = 0;
+    for (int i = 0; i < this->NumberOfPieces; ++i) {
+      const int *extent = this->PieceExtents + 6 * i;
+      for (int k = 0; k < 3; ++k) {
+        if (extent[2 * k] >= this->WholeExtent[2 * k] && extent[2 * k + 1] <= this->WholeExtent[2 * k + 1] && extent[2 * k] <= extent[2 * k + 1]) continue;
+        vtkErrorMacro("the extent of piece " << i << " is not within the whole extent");
+        return 0;
+      }
+      covered += size(extent, 0);
+    }
+    if (covered >= cells) return 1;
+    vtkErrorMacro("the pieces have " << covered << " of the " << cells << " cells of the whole extent");
+    return 0;
+  }
+
+private:
+  static double size(const int *extent, int more) {
+    double product = 1;
+    for (int k = 0; k < 3; ++k) {
+      const double length = static_cast<double>(extent[2 * k + 1]) - extent[2 * k] + more;
+      product *= length < 0 ? 0 : length;
+    }
+    return product;
   }
 };
 
@@ -181,14 +235,6 @@ private:
   }
 };
 
-class PiecesReader : public vtkXMLPUnstructuredGridReader {
-public:
-  static PiecesReader *New() { VTK_STANDARD_NEW_BODY(PiecesReader); }
-
-protected:
-  vtkXMLDataReader *CreatePieceReader() override { return GridReader::New(); }
-};
-
 template <typename Reader> auto read(const char *path) {
   vtkNew<Reader> reader;
   reader->SetFileName(path);
@@ -196,12 +242,36 @@ template <typename Reader> auto read(const char *path) {
   return vtkSmartPointer<std::remove_pointer_t<decltype(reader->GetOutput())>>(reader->GetOutput());
 }
 
+template <typename Reader> void read_structured(const tcv::Reading &reading, tcv::Contents *contents) {
+  const auto grid = tcv::captured(reading.context, reading.path.c_str(), [&] { return read<Structured<Reader>>(reading.path.c_str()); });
+  tcv::add_grid(reading, reading.block, grid, contents);
+}
+
 } // namespace
 
 namespace tcv {
 
-vtkSmartPointer<vtkUnstructuredGrid> read_vtu(const char *path) { return read<GridReader>(path); }
-vtkSmartPointer<vtkUnstructuredGrid> read_pvtu(const char *path) { return read<PiecesReader>(path); }
+void read_vtu(const Reading &reading, Contents *contents) {
+  const auto pieces = captured(reading.context, reading.path.c_str(), [&] {
+    std::vector<Grid> grids;
+    vtkNew<GridReader> reader;
+    reader->SetFileName(reading.path.c_str());
+    reader->UpdateInformation();
+    const int count = std::max(reader->pieces(), 1);
+    for (int i = 0; i < count; ++i) {
+      if (!reader->UpdatePiece(i, count, 0)) break; // has been said why
+      grids.push_back(Grid::New());
+      grids.back()->ShallowCopy(reader->GetOutput());
+    }
+    return grids;
+  });
+  for (const Grid &grid : pieces) add_grid(reading, reading.block, grid, contents);
+}
+
+void read_vti(const Reading &reading, Contents *contents) { read_structured<vtkXMLImageDataReader>(reading, contents); }
+void read_vtr(const Reading &reading, Contents *contents) { read_structured<vtkXMLRectilinearGridReader>(reading, contents); }
+void read_vts(const Reading &reading, Contents *contents) { read_structured<vtkXMLStructuredGridReader>(reading, contents); }
+
 vtkSmartPointer<vtkPolyData> read_vtp(const char *path) { return read<Checked<vtkXMLPolyDataReader>>(path); }
 
 } // namespace tcv

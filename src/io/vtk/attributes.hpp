@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// The arrays of pieces as arrays of the one grid that is made of them.
+#ifndef TETCAST_VTK_ATTRIBUTES_HPP
+#define TETCAST_VTK_ATTRIBUTES_HPP
+
+#include "points.hpp"
+
+class vtkDataArray;
+class vtkDataSetAttributes;
+
+namespace tcv {
+
+// Merged points at which pieces have different values.
+struct Differences {
+  int64_t points = 0;
+  std::string array; // the first that has any
+};
+
+// Adds the arrays to `grid`, which has its points and cells, and warns of what is missing.
+void join_arrays(const Reading &reading, const std::vector<Piece> &pieces, const std::vector<PieceMap> &maps, vtkUnstructuredGrid *grid,
+                 Differences *differences);
+
+bool is_ghost_array(const std::string &name);
+bool numbers_things(vtkDataSetAttributes *attributes, vtkDataArray *array); // identifies points or cells
+void check_length(const char *place, const char *what, const std::string &name, vtkDataArray *array, int64_t count); // fails
+
+} // namespace tcv
+
+#endif

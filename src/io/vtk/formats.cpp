@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// The formats that volume meshes are read from: one table, which everything that lists formats takes them from.
+#include "formats.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#include "common.hpp"
+#include "files.hpp"
+#include "plugin.hpp"
+
+namespace {
+
+// Content tells (file_kind); the extensions only where content is silent. A row without a name is another kind of the format above it.
+const struct {
+  const char *name, *extensions, *kind;
+  void (*read)(const tcv::Reading &reading, tcv::Contents *contents);
+  const char *plugin; // that reading needs; null: none
+} formats[] = {
+    {"VTK XML, unstructured grid", ".vtu", "VTKFile UnstructuredGrid", tcv::read_vtu, nullptr},
+    {"VTK XML, structured grid", ".vti .vtr .vts", "VTKFile ImageData", tcv::read_vti, nullptr},
+    {nullptr, ".vtr", "VTKFile RectilinearGrid", tcv::read_vtr, nullptr},
+    {nullptr, ".vts", "VTKFile StructuredGrid", tcv::read_vts, nullptr},
+    {"VTK XML, in pieces", ".pvtu .pvti .pvtr .pvts", "VTKFile PUnstructuredGrid", tcv::read_pieces, nullptr},
+    {nullptr, "", "VTKFile PImageData", tcv::read_pieces, nullptr},
+    {nullptr, "", "VTKFile PRectilinearGrid", tcv::read_pieces, nullptr},
+    {nullptr, "", "VTKFile PStructuredGrid", tcv::read_pieces, nullptr},
+    {"VTK XML, blocks", ".vtm .vtmb", "VTKFile vtkMultiBlockDataSet", tcv::read_blocks, nullptr},
+    {"VTK legacy", ".vtk", "vtk UNSTRUCTURED_GRID", tcv::read_legacy_grid, nullptr},
+    {nullptr, "", "vtk STRUCTURED_POINTS", tcv::read_legacy_structured, nullptr},
+    {nullptr, "", "vtk RECTILINEAR_GRID", tcv::read_legacy_structured, nullptr},
+    {nullptr, "", "vtk STRUCTURED_GRID", tcv::read_legacy_structured, nullptr},
+    {"ParaView's time series", ".pvd .series", "VTKFile Collection", tcv::read_pvd, nullptr},
+    {nullptr, "", "JSON", tcv::read_series, nullptr},
+    {"Exodus II", ".ex2 .exo .e .g", "NetCDF", tcv::read_exodus, "exodus"},
+    {nullptr, "", "HDF5", tcv::read_exodus, "exodus"},
+    {"VTKHDF", ".vtkhdf .hdf", "HDF5 VTKHDF", tcv::read_vtkhdf, "hdf"},
+    {"EnSight 6 and Gold", ".case .encas", "EnSight", tcv::read_ensight, "ensight"},
+    {"CGNS", ".cgns", "HDF5 CGNS", tcv::read_cgns, "cgns"},
+    {nullptr, "", "ADF", tcv::read_cgns, "cgns"},
+    {"OpenFOAM", ".foam", "OpenFOAM", tcv::read_openfoam, "openfoam"},
+    {"TetGen", ".node .ele", "TetGen", tcv::read_tetgen, nullptr}, // by extension alone
+};
+
+bool one_of(const char *path, const char *extensions) {
+  const std::string all = extensions;
+  for (size_t at = 0; at < all.size();) {
+    const size_t end = std::min(all.find(' ', at), all.size());
+    if (tcv::has_extension(path, all.substr(at, end - at).c_str())) return true;
+    at = end + 1;
+  }
+  return false;
+}
+
+bool available(const char *plugin) { return !plugin || tcv::plugin_exists(plugin); }
+
+} // namespace
+
+namespace tcv {
+
+void read_contents(const Reading &reading, Contents *contents) {
+  const char *path = reading.path.c_str();
+  const std::string kind = has_extension(path, ".foam") ? "OpenFOAM" : file_kind(file_head(path)); // those are empty
+  std::string extensions;
+  for (const auto &format : formats) {
+    if (format.name) extensions += (extensions.empty() ? "" : " ") + std::string(format.extensions);
+    if (kind.empty() ? !one_of(path, format.extensions) : kind != format.kind) continue;
+    return format.read(reading, contents);
+  }
+  refuse(path, kind, "a volume mesh", extensions.c_str());
+}
+
+void read_part(const Reading &of, const std::string &path, const std::string &block, Contents *contents) {
+  if (of.depth >= 8) fail(TETCAST_ERROR_DATA, "%s: is listed by a file that lists a file …, eight times over", path.c_str());
+  try {
+    if (is_surface(file_kind(file_head(path.c_str())))) {
+      list_block(block, contents);
+      contents->surfaces += block_wanted(block, of.desc->block);
+      return;
+    }
+    read_contents({of.context, of.desc, path, block, of.depth + 1}, contents);
+  } catch (const Failure &failure) {
+    throw Failure{failure.status, of.path + ": " + failure.text};
+  }
+}
+
+bool block_wanted(const std::string &path, const char *name) {
+  return !name || ("/" + path + "/").find("/" + std::string(name) + "/") != std::string::npos;
+}
+
+static std::string list_of(const std::vector<double> &times) {
+  char text[160];
+  const size_t last = times.size() - 1;
+  std::snprintf(text, sizeof text, "there are steps 0 to %zu, at times %.9g to %.9g", last, times[0], times[last]);
+  return text;
+}
+
+int64_t choose_step(const std::string &path, const TetcastDatasetDesc &desc, const std::vector<double> &times) {
+  const auto count = static_cast<int64_t>(times.size());
+  if (!std::isnan(desc.time)) {
+    if (count == 0) fail(TETCAST_ERROR_ARGUMENT, "%s: knows of no times: it is of one step", path.c_str());
+    int64_t nearest = 0;
+    for (int64_t i = 1; i < count; ++i) {
+      if (std::fabs(times[static_cast<size_t>(i)] - desc.time) < std::fabs(times[static_cast<size_t>(nearest)] - desc.time)) nearest = i;
+    }
+    // Decimal fractions are not exact, and some formats keep times in single precision.
+    const double found = times[static_cast<size_t>(nearest)];
+    const double scale = std::fmax(std::fabs(found), times.back() - times.front());
+    if (!(std::fabs(found - desc.time) <= 1e-6 * scale)) {
+      fail(TETCAST_ERROR_ARGUMENT, "%s: has no time %.9g; the nearest is %.9g, of step %lld; %s", path.c_str(), desc.time, found,
+           static_cast<long long>(nearest), list_of(times).c_str());
+    }
+    return nearest;
+  }
+  const int64_t steps = count ? count : 1;
+  if (desc.step >= steps || desc.step < -steps) {
+    fail(TETCAST_ERROR_ARGUMENT, "%s: has no time step %lld; %s", path.c_str(), static_cast<long long>(desc.step),
+         count ? list_of(times).c_str() : "it is of one step, 0");
+  }
+  return desc.step < 0 ? desc.step + steps : desc.step;
+}
+
+} // namespace tcv
+
+bool tetcast_dataset_format(int i, const char **name, const char **extensions) {
+  for (const auto &format : formats) {
+    if (!format.name || !available(format.plugin) || i-- != 0) continue;
+    if (name) *name = format.name;
+    if (extensions) *extensions = format.extensions;
+    return true;
+  }
+  return false;
+}

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the table of formats has: a function for each kind of content.
+#ifndef TETCAST_VTK_FORMATS_HPP
+#define TETCAST_VTK_FORMATS_HPP
+
+#include "contents.hpp"
+
+namespace tcv {
+
+void read_vtu(const Reading &reading, Contents *contents);
+void read_vti(const Reading &reading, Contents *contents);
+void read_vtr(const Reading &reading, Contents *contents);
+void read_vts(const Reading &reading, Contents *contents);
+void read_pieces(const Reading &reading, Contents *contents); // .pvtu and the like
+void read_blocks(const Reading &reading, Contents *contents); // .vtm
+void read_legacy_grid(const Reading &reading, Contents *contents);
+void read_legacy_structured(const Reading &reading, Contents *contents);
+void read_pvd(const Reading &reading, Contents *contents);
+void read_series(const Reading &reading, Contents *contents);
+void read_exodus(const Reading &reading, Contents *contents);
+void read_vtkhdf(const Reading &reading, Contents *contents);
+void read_ensight(const Reading &reading, Contents *contents);
+void read_cgns(const Reading &reading, Contents *contents);
+void read_openfoam(const Reading &reading, Contents *contents);
+void read_tetgen(const Reading &reading, Contents *contents); // .node with .ele
+
+} // namespace tcv
+
+#endif

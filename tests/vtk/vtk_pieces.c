@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What is in pieces is read as the whole: ghosts, blanked cells, and points that pieces share. */
+#include "box.h"
+
+#define PIECE(data, xyz)                                                                                                     \
+  "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\">" data                                                                    \
+  "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">" xyz "</DataArray></Points><Cells>"        \
+  "<DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray>"                                     \
+  "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">4</DataArray>"                                                \
+  "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">10</DataArray></Cells></Piece>"
+#define VTU(pieces)                                                                                                          \
+  "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\"><UnstructuredGrid>" pieces                 \
+  "</UnstructuredGrid></VTKFile>"
+#define VALUES(type, name, values) "<DataArray type=\"" type "\" Name=\"" name "\" format=\"ascii\">" values "</DataArray>"
+#define OF_POINTS(arrays) "<PointData>" arrays "</PointData>"
+#define OF_CELLS(arrays) "<CellData>" arrays "</CellData>"
+#define PVTU(sources) "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\"><PUnstructuredGrid>" sources "</PUnstructuredGrid></VTKFile>"
+#define SOURCE(file) "<Piece Source=\"" file "\"/>"
+
+/* Two tetrahedra either side of the triangle (1 0 0) (0 1 0) (0 0 1). */
+#define LEFT "0 0 0 1 0 0 0 1 0 0 0 1"
+#define RIGHT "1 0 0 0 1 0 0 0 1 1 1 1"
+
+static TetcastMesh *mesh_of(const TetcastDataset *dataset) {
+  TetcastMesh *mesh;
+  assert_int_equal(tetcast_dataset_mesh(dataset, &mesh), TETCAST_OK);
+  return mesh;
+}
+
+static void assert_same_mesh(const TetcastDataset *a, const TetcastDataset *b) {
+  TetcastMesh *mesh[2] = {mesh_of(a), mesh_of(b)};
+  assert_int_equal(tetcast_mesh_vertex_count(mesh[0]), tetcast_mesh_vertex_count(mesh[1]));
+  assert_int_equal(tetcast_mesh_tetrahedron_count(mesh[0]), tetcast_mesh_tetrahedron_count(mesh[1]));
+  for (int64_t i = 0; i < tetcast_mesh_vertex_count(mesh[0]); ++i) {
+    double p[2][3];
+    for (int j = 0; j < 2; ++j) tetcast_mesh_vertex(mesh[j], i, p[j]);
+    assert_memory_equal(p[0], p[1], sizeof p[0]);
+  }
+  for (int64_t i = 0; i < tetcast_mesh_tetrahedron_count(mesh[0]); ++i) {
+    int64_t v[2][4];
+    for (int j = 0; j < 2; ++j) tetcast_mesh_tetrahedron(mesh[j], i, v[j]);
+    assert_memory_equal(v[0], v[1], sizeof v[0]);
+  }
+  for (int j = 0; j < 2; ++j) tetcast_mesh_destroy(&mesh[j]);
+}
+
+/* Pieces in the order of the whole's cells make the whole's very mesh, with ghosts of either kind and without. */
+static void test_layers(void **state) {
+  Fixture *fixture = *state;
+  sample_layers(in_folder(fixture, "all.vtu"), 0, 4, GHOST_NONE);
+  TetcastDataset *whole = read_good(fixture, fixture->path);
+  for (int ghosts = GHOST_NONE; ghosts <= GHOST_LEVELS; ++ghosts) {
+    sample_layers(in_folder(fixture, "a.vtu"), 0, 1, (SampleGhosts)ghosts);
+    sample_layers(in_folder(fixture, "b.vtu"), 1, 3, (SampleGhosts)ghosts);
+    sample_layers(in_folder(fixture, "c.vtu"), 3, 4, (SampleGhosts)ghosts);
+    const char *path = text_file(fixture, "all.pvtu", PVTU(SOURCE("a.vtu") SOURCE("b.vtu") SOURCE("c.vtu")));
+    TetcastDataset *dataset = read_with(fixture, path, tetcast_dataset_desc_default());
+    assert_int_equal(fixture->warnings, 0);
+    assert_layers(fixture, dataset, 0, 4, 1, true);
+    assert_same_mesh(dataset, whole);
+    const TetcastDatasetPieces pieces = tetcast_dataset_pieces(dataset);
+    assert_int_equal(pieces.pieces, 3);
+    assert_int_equal(pieces.surfaces, 0);
+    assert_int_equal(pieces.ghost_cells, ghosts ? 4 * 6 : 0);
+    assert_int_equal(pieces.ghost_points, ghosts ? 4 * 12 : 0);
+    assert_int_equal(pieces.merged_points, 2 * 12);
+    assert_int_equal(pieces.differing_points, 0);
+    assert_int_equal(tetcast_dataset_point_count(dataset), 60 + 24 + (ghosts ? 48 : 0));
+    assert_int_equal(tetcast_dataset_cell_count(dataset), 24 + (ghosts ? 24 : 0));
+    TetcastDatasetArray array; /* the marks are no field */
+    for (int i = 0; tetcast_dataset_array(dataset, i, &array); ++i) assert_null(strstr(array.name, "Ghost"));
+    tetcast_dataset_destroy(&dataset);
+
+    /* One piece alone: without its ghosts. */
+    dataset = read_good(fixture, in_folder(fixture, "b.vtu"));
+    assert_layers(fixture, dataset, 1, 3, 1, true);
+    tetcast_dataset_destroy(&dataset);
+  }
+  tetcast_dataset_destroy(&whole);
+}
+
+static void test_blanked(void **state) {
+  Fixture *fixture = *state;
+  const char *path = in_folder(fixture, "blanked.vts");
+  sample_blanked(path);
+  TetcastDataset *dataset = read_good(fixture, path);
+  assert_int_equal(tetcast_dataset_pieces(dataset).ghost_cells, 2);
+  assert_int_equal(tetcast_dataset_pieces(dataset).ghost_points, 2); /* the corners that no other cell has */
+  TetcastMesh *mesh = mesh_of(dataset);
+  TetcastMeshHealth health;
+  assert_int_equal(tetcast_mesh_health(fixture->context, mesh, &health), TETCAST_OK);
+  assert_true(fabs(health.volume - 11) < 1e-12);
+  tetcast_mesh_destroy(&mesh);
+  tetcast_dataset_destroy(&dataset);
+}
+
+static TetcastMeshHealth health_of(Fixture *fixture, const TetcastDataset *dataset) {
+  TetcastMesh *mesh = mesh_of(dataset);
+  TetcastMeshHealth health;
+  assert_int_equal(tetcast_mesh_health(fixture->context, mesh, &health), TETCAST_OK);
+  tetcast_mesh_destroy(&mesh);
+  return health;
+}
+
+/* Pieces whose points are a little apart stay apart, unless a tolerance says otherwise. */
+static void test_tolerance(void **state) {
+  Fixture *fixture = *state;
+  const char *path = text_file(fixture, "near.vtu", VTU(PIECE("", LEFT) PIECE("", "1.000001 0 0 0 1 -1e-6 0 0 1 1 1 1")));
+  static const struct {
+    double tolerance;
+    int merged, faces;
+  } cases[] = {{-1, 1, 8}, {0, 1, 8}, {5e-7, 1, 8}, {1.1e-6, 3, 6}, {0.5, 3, 6}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+    TetcastDatasetDesc desc = tetcast_dataset_desc_default();
+    desc.merge_tolerance = cases[i].tolerance;
+    TetcastDataset *dataset = read_with(fixture, path, desc);
+    assert_int_equal(tetcast_dataset_pieces(dataset).merged_points, cases[i].merged);
+    assert_int_equal(health_of(fixture, dataset).boundary_faces, cases[i].faces);
+    tetcast_dataset_destroy(&dataset);
+  }
+}
+
+/* Coincident points of one piece are a crack, which stays, alone and between others; with a tolerance of 0 it is closed. */
+static void test_cracks(void **state) {
+  Fixture *fixture = *state;
+  static const char crack[] = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n" LEFT " " RIGHT
+                              "\nCELLS 2 10\n4 0 1 2 3\n4 4 5 6 7\nCELL_TYPES 2\n10\n10\n";
+  text_file(fixture, "far.vtu", VTU(PIECE("", "2 1 1 1 2 1 1 1 2 1 1 1")));
+  const char *path = text_file(fixture, "crack.vtk", crack);
+  for (int list = 0; list < 2; ++list) {
+    if (list) path = text_file(fixture, "crack.pvd", "<VTKFile type=\"Collection\"><Collection><DataSet file=\"crack.vtk\"/>"
+                                                     "<DataSet file=\"far.vtu\"/></Collection></VTKFile>");
+    for (int closed = 0; closed < 2; ++closed) {
+      TetcastDatasetDesc desc = tetcast_dataset_desc_default();
+      if (closed) desc.merge_tolerance = 0;
+      TetcastDataset *dataset = read_with(fixture, path, desc);
+      const TetcastMeshHealth health = health_of(fixture, dataset);
+      assert_int_equal(health.boundary_faces, (closed ? 6 : 8) + (list ? 4 : 0));
+      assert_int_equal(tetcast_dataset_pieces(dataset).merged_points, (closed ? 3 : 0) + list);
+      tetcast_dataset_destroy(&dataset);
+    }
+  }
+}
+
+static double value_at(const TetcastDataset *dataset, const char *name, double x, double y, double z) {
+  TetcastMesh *mesh = mesh_of(dataset);
+  TetcastField *field;
+  assert_int_equal(tetcast_dataset_field(dataset, name, &field, NULL), TETCAST_OK);
+  double value = -1;
+  for (int64_t i = 0; i < tetcast_mesh_vertex_count(mesh); ++i) {
+    double p[3];
+    tetcast_mesh_vertex(mesh, i, p);
+    if (p[0] == x && p[1] == y && p[2] == z) value = tetcast_field_value(field, i);
+  }
+  tetcast_field_destroy(&field);
+  tetcast_mesh_destroy(&mesh);
+  return value;
+}
+
+/* The first piece's values count, unless it calls the point a duplicate; NaN where a piece has none. */
+static void test_values(void **state) {
+  Fixture *fixture = *state;
+  text_file(fixture, "left.vtu", VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "1 2 3 4") VALUES("Float32", "mixed", "1 2 3 4")), LEFT)));
+  text_file(fixture, "right.vtu",
+            VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "2 3.5 4 5") VALUES("Int32", "mixed", "2 3 4 16777217"))
+                          OF_CELLS(VALUES("Int32", "b", "7")), RIGHT)));
+  const char *path = text_file(fixture, "values.pvtu", PVTU(SOURCE("left.vtu") SOURCE("right.vtu")));
+  TetcastDataset *dataset = read_with(fixture, path, tetcast_dataset_desc_default());
+  assert_int_equal(fixture->warnings, 2); /* of the point, and of b */
+  assert_int_equal(tetcast_dataset_pieces(dataset).differing_points, 1);
+  assert_true(value_at(dataset, "a", 0, 1, 0) == 3);
+  assert_true(value_at(dataset, "a", 1, 1, 1) == 5);
+  assert_true(value_at(dataset, "mixed", 1, 1, 1) == 16777217);
+  TetcastField *field;
+  assert_int_equal(tetcast_dataset_field(dataset, "b", &field, NULL), TETCAST_OK);
+  assert_true(isnan(tetcast_field_value(field, 0)) && tetcast_field_value(field, 1) == 7);
+  tetcast_field_destroy(&field);
+  tetcast_dataset_destroy(&dataset);
+
+  text_file(fixture, "marked.vtu",
+            VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "1 2 3 4") VALUES("UInt8", "vtkGhostType", "0 0 1 0")), LEFT)));
+  dataset = read_with(fixture, text_file(fixture, "values.pvtu", PVTU(SOURCE("marked.vtu") SOURCE("right.vtu"))), tetcast_dataset_desc_default());
+  assert_true(value_at(dataset, "a", 0, 1, 0) == 3.5);
+  assert_int_equal(tetcast_dataset_pieces(dataset).ghost_cells, 0);
+  tetcast_dataset_destroy(&dataset);
+
+  text_file(fixture, "pairs.vtu",
+            VTU(PIECE(OF_POINTS("<DataArray type=\"Float64\" Name=\"mixed\" NumberOfComponents=\"2\" format=\"ascii\">"
+                                "1 2 3 4 5 6 7 8</DataArray>"), RIGHT)));
+  dataset = read_with(fixture, text_file(fixture, "values.pvtu", PVTU(SOURCE("left.vtu") SOURCE("pairs.vtu"))), tetcast_dataset_desc_default());
+  assert_int_equal(fixture->warnings, 2); /* of `mixed`, and that one lacks a */
+  TetcastDatasetArray array;
+  assert_true(tetcast_dataset_array(dataset, 0, &array));
+  assert_string_equal(array.name, "a");
+  assert_false(tetcast_dataset_array(dataset, 1, &array));
+  tetcast_dataset_destroy(&dataset);
+}
+
+/* Parts of a machine that had no work, files of nothing but ghosts, and lists that lead nowhere. */
+static void test_odd_lists(void **state) {
+  Fixture *fixture = *state;
+  text_file(fixture, "left.vtu", VTU(PIECE("", LEFT)));
+  text_file(fixture, "ghost.vtu", VTU(PIECE(OF_CELLS(VALUES("UInt8", "vtkGhostType", "1")), RIGHT)));
+  text_file(fixture, "none.vtu",
+            VTU("<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
+                "format=\"ascii\"></DataArray></Points><Cells>" VALUES("Int32", "connectivity", "") VALUES("Int32", "offsets", "")
+                    VALUES("UInt8", "types", "") "</Cells></Piece>"));
+  const char *path = text_file(fixture, "good.pvtu", PVTU(SOURCE("none.vtu") SOURCE("ghost.vtu") SOURCE("left.vtu") SOURCE("none.vtu")));
+  TetcastDataset *dataset = read_with(fixture, path, tetcast_dataset_desc_default());
+  assert_int_equal(tetcast_dataset_pieces(dataset).ghost_cells, 1);
+  assert_int_equal(tetcast_dataset_pieces(dataset).ghost_points, 4);
+  assert_int_equal(tetcast_dataset_pieces(dataset).merged_points, 0);
+  assert_int_equal(health_of(fixture, dataset).boundary_faces, 4);
+  tetcast_dataset_destroy(&dataset);
+
+  read_bad(fixture, text_file(fixture, "a.pvtu", PVTU(SOURCE("ghost.vtu"))), TETCAST_ERROR_DATA, "no cells but ghosts");
+  read_bad(fixture, text_file(fixture, "a.pvtu", PVTU(SOURCE("none.vtu"))), TETCAST_ERROR_DATA, "no cells");
+  read_bad(fixture, text_file(fixture, "a.pvtu", PVTU("")), TETCAST_ERROR_DATA, "no cells");
+  read_bad(fixture, text_file(fixture, "a.pvtu", PVTU("<Piece/>")), TETCAST_ERROR_DATA, "names no file");
+  read_bad(fixture, text_file(fixture, "a.pvtu", PVTU(SOURCE("left.vtu") SOURCE("gone.vtu"))), TETCAST_ERROR_IO, "gone.vtu: can't be opened: No such file");
+  read_bad(fixture, text_file(fixture, "a.pvtu", PVTU(SOURCE("a.pvtu"))), TETCAST_ERROR_DATA, "eight times over");
+  read_bad(fixture, text_file(fixture, "a.pvtu", PVTU(SOURCE("a.pvtu") SOURCE("a.pvtu") SOURCE("a.pvtu") SOURCE("a.pvtu"))),
+           TETCAST_ERROR_DATA, "eight times over");
+}
+
+/* The same mesh, by other software: in one file and in four, without and with ghosts. */
+static void test_others_pieces(void **state) {
+  Fixture *fixture = *state;
+  TetcastDataset *whole = read_good(fixture, data_path(fixture, "encodings/ascii.vtu"));
+  const TetcastMeshHealth expected = health_of(fixture, whole);
+  static const char *const names[] = {"encodings/pieces.pvtu", "encodings/pieces_ghost.pvtu"};
+  for (int i = 0; i < 2; ++i) {
+    TetcastDataset *dataset = read_with(fixture, data_path(fixture, names[i]), tetcast_dataset_desc_default());
+    const TetcastMeshHealth health = health_of(fixture, dataset);
+    assert_int_equal(tetcast_dataset_pieces(dataset).pieces, 4);
+    assert_int_equal(tetcast_dataset_pieces(dataset).ghost_cells, i ? 529 : 0);
+    assert_int_equal(tetcast_dataset_cell_count(dataset) - tetcast_dataset_pieces(dataset).ghost_cells, tetcast_dataset_cell_count(whole));
+    assert_true(fabs(health.volume / expected.volume - 1) < 1e-12);
+    assert_int_equal(health.boundary_faces, expected.boundary_faces);
+    assert_int_equal(health.components, expected.components);
+    assert_int_equal(health.coincident_vertices, expected.coincident_vertices);
+    assert_int_equal(health.unused_vertices, expected.unused_vertices);
+    tetcast_dataset_destroy(&dataset);
+  }
+  tetcast_dataset_destroy(&whole);
+  whole = read_good(fixture, data_path(fixture, "cells/cube_pvtu/cube.pvtu"));
+  const TetcastMeshHealth health = health_of(fixture, whole);
+  assert_int_equal(health.components, 1);
+  assert_int_equal(health.boundary_faces, 6 * 9 * 2);
+  tetcast_dataset_destroy(&whole);
+  whole = read_good(fixture, data_path(fixture, "cells/polyhedron2pieces.vtu"));
+  assert_int_equal(tetcast_dataset_pieces(whole).pieces, 2);
+  tetcast_dataset_destroy(&whole);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {TEST(test_layers), TEST(test_blanked), TEST(test_tolerance), TEST(test_cracks),
+                                     TEST(test_values), TEST(test_odd_lists), TEST(test_others_pieces)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
