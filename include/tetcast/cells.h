@@ -70,7 +70,8 @@ typedef struct TetcastCut TetcastCut;
 /* Cuts cells so that neighbours agree, whatever their types and however their nodes are numbered: a face is cut by the diagonals through
  * its vertex of smallest index (Dompierre et al. 1999), and a cell into the pyramids from its vertex of smallest index to the faces
  * without it. Where these overlap (none do in a convex cell with plane faces), and pyramids from the mean of the cell's vertices
- * overlap less, that becomes a vertex. Either way the tetrahedra's signed volumes add up to what the cell's surface encloses, positive for cells
+ * overlap less, that becomes a vertex; so it does in polyhedra some of whose
+ * faces are in one plane. Either way the tetrahedra's signed volumes add up to what the cell's surface encloses, positive for cells
  * whose nodes are in VTK's order; polyhedra are always positive.
  *
  * Curved cells are first cut into straight ones between points of their lattice, at which all fields are as the cell's shape functions say.

@@ -52,6 +52,7 @@ typedef struct TcTets {
   int64_t count;        /* of tet */
   bool centred;
   double positive, negative; /* six times the volumes of those that are the right way round as the cell came, and of the others */
+  bool flat;                 /* whether one has next to no volume */
 } TcTets;
 
 /* Cuts the cell at pieces->id and p. */

@@ -59,6 +59,7 @@ static int64_t cone(const TcShape *shape, const uint32_t *id, uint32_t top, int6
 }
 
 static void measure(TcTets *pieces) {
+  double smallest = INFINITY;
   pieces->positive = pieces->negative = 0;
   for (int64_t i = 0; i < pieces->count; ++i) {
     const uint32_t *t = pieces->tet[i];
@@ -69,7 +70,9 @@ static void measure(TcTets *pieces) {
     const double volume = (x[1] * y[2] - x[2] * y[1]) * z[0] + (x[2] * y[0] - x[0] * y[2]) * z[1] + (x[0] * y[1] - x[1] * y[0]) * z[2];
     pieces->positive += volume > 0 ? volume : 0;
     pieces->negative -= volume < 0 ? volume : 0;
+    smallest = fmin(smallest, fabs(volume));
   }
+  pieces->flat = smallest <= fold_limit * (pieces->positive + pieces->negative);
 }
 
 bool tc_is_folded(double positive, double negative) { return fmin(positive, negative) > fold_limit * fmax(positive, negative); }
@@ -143,6 +146,8 @@ static void cut_from_corner(const TcShape *shape, uint32_t corner, TcTets *piece
   measure(pieces);
 }
 
+/* A polyhedron with several faces in a plane, or corners in a line, has flat tetrahedra at them, whose faces may be without area and
+ * then those of more than two; unless it gets a vertex inside. */
 void tc_cut_shape(const TcShape *shape, TcTets *pieces) {
   if (shape == tc_shape(TC_TETRAHEDRON)) { /* stays as it came */
     for (uint32_t k = 0; k < 4; ++k) pieces->tet[0][k] = k;
@@ -153,10 +158,13 @@ void tc_cut_shape(const TcShape *shape, TcTets *pieces) {
   }
   const uint32_t corner = smallest(shape, pieces->id);
   cut_from_corner(shape, corner, pieces);
-  if (tc_is_folded(pieces->positive, pieces->negative)) {
+  const bool folded = tc_is_folded(pieces->positive, pieces->negative);
+  if (folded || (shape->turned && pieces->flat)) {
     const double overlap = fmin(pieces->positive, pieces->negative);
     cut_from_centre(shape, pieces);
-    if (!(fmin(pieces->positive, pieces->negative) < 0.5 * overlap)) cut_from_corner(shape, corner, pieces);
+    const bool better = folded ? fmin(pieces->positive, pieces->negative) < 0.5 * overlap
+                               : !pieces->flat && !tc_is_folded(pieces->positive, pieces->negative);
+    if (!better) cut_from_corner(shape, corner, pieces);
   }
   if (shape->either_way && pieces->negative > pieces->positive) {
     for (int64_t i = 0; i < pieces->count; ++i) {
