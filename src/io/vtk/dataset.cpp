@@ -80,6 +80,22 @@ static void take_arrays(const char *path, vtkDataSetAttributes *attributes, Tetc
   }
 }
 
+static void warn_of_cut(const TetcastDataset *dataset) {
+  const TetcastCutInfo &info = dataset->tetrahedra.info;
+  const struct {
+    int64_t count;
+    const char *text;
+  } rows[] = {{info.empty, "have no inside and are left out"},
+              {info.oversized, "have more points than their type has: the last ones of each are ignored"},
+              {info.folded, "are far from convex or tangled: their tetrahedra overlap"},
+              {info.open, "are polyhedra whose faces don't close"}};
+  for (const auto &row : rows) {
+    if (row.count == 0) continue;
+    tetcast_context_message(dataset->context, TETCAST_SEVERITY_WARNING, "%s: %lld cells %s", dataset->path.c_str(),
+                            static_cast<long long>(row.count), row.text);
+  }
+}
+
 static void read_dataset(TetcastContext *context, const char *path, TetcastDataset *dataset) {
   const Grid grid = read_grid(context, path);
   dataset->context = context;
@@ -88,18 +104,11 @@ static void read_dataset(TetcastContext *context, const char *path, TetcastDatas
   check_cells(path, grid->GetCells(), dataset->point_count, "cell");
   {
     const Capture capture; // cutting may complain as well
-    make_tetrahedra(path, grid, &dataset->tetrahedra);
+    CutOptions options;
+    options.threads = tetcast_context_threads(context);
+    make_tetrahedra(path, grid, dataset->points, options, &dataset->tetrahedra);
   }
-  if (dataset->tetrahedra.uncut > 0) {
-    tetcast_context_message(context, TETCAST_SEVERITY_WARNING,
-                            "%s: %lld cells can't be cut into tetrahedra and are left out", path,
-                            static_cast<long long>(dataset->tetrahedra.uncut));
-  }
-  if (dataset->tetrahedra.oversized > 0) {
-    tetcast_context_message(context, TETCAST_SEVERITY_WARNING,
-                            "%s: %lld cells have more points than their type has: the last ones of each are ignored",
-                            path, static_cast<long long>(dataset->tetrahedra.oversized));
-  }
+  warn_of_cut(dataset);
   take_arrays(path, grid->GetPointData(), TETCAST_POINT, dataset->point_count, &dataset->arrays);
   take_arrays(path, grid->GetCellData(), TETCAST_CELL, dataset->cell_count, &dataset->arrays);
 }
