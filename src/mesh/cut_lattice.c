@@ -435,7 +435,7 @@ static void part(const Parts *parts, TcShapeName shape, const int at[3], const s
 static void tetrahedron_parts(const Parts *parts, int n, const int at[3]) {
   static const signed char upright[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   static const signed char between[6][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}};
-  static const signed char inverted[4][3] = {{1, 1, 1}, {0, 1, 1}, {1, 0, 1}, {1, 1, 0}};
+  static const signed char inverted[4][3] = {{1, 1, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 0}};
   const int sum = at[0] + at[1] + at[2];
   if (sum < n) part(parts, TC_TETRAHEDRON, at, upright);
   if (sum + 1 < n) part(parts, TC_OCTAHEDRON, at, between);
