@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include <tetcast/cells.h>
 #include <tetcast/context.h>
 #include <tetcast/field.h>
 #include <tetcast/mesh.h>
@@ -46,6 +47,9 @@ TETCAST_API bool tetcast_dataset_array(const TetcastDataset *dataset, int i, Tet
 /* Number and bounds of the file's points, and of its cells of any kind. */
 TETCAST_API int64_t tetcast_dataset_point_count(const TetcastDataset *dataset);
 TETCAST_API int64_t tetcast_dataset_cell_count(const TetcastDataset *dataset);
+
+/* What cutting its cells came to, all 0 when all of them were tetrahedra already. Vertices that were added come after the file's points. */
+TETCAST_API TetcastCutInfo tetcast_dataset_cut(const TetcastDataset *dataset);
 
 /* The tetrahedra. Arrays may be the dataset's own: it must outlive the mesh, which the caller destroys. */
 TETCAST_API TetcastStatus tetcast_dataset_mesh(const TetcastDataset *dataset, TetcastMesh **mesh);

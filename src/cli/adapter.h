@@ -16,6 +16,7 @@
   X(bool, dataset_array, (const TetcastDataset *, int, TetcastDatasetArray *))                                         \
   X(int64_t, dataset_point_count, (const TetcastDataset *))                                                            \
   X(int64_t, dataset_cell_count, (const TetcastDataset *))                                                             \
+  X(TetcastCutInfo, dataset_cut, (const TetcastDataset *))                                                             \
   X(TetcastStatus, dataset_mesh, (const TetcastDataset *, TetcastMesh **))                                             \
   X(TetcastStatus, dataset_field, (const TetcastDataset *, const char *, TetcastField **, const char **))              \
   X(TetcastStatus, dataset_write,                                                                                      \

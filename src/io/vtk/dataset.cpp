@@ -154,6 +154,10 @@ bool tetcast_dataset_array(const TetcastDataset *dataset, int i, TetcastDatasetA
 int64_t tetcast_dataset_point_count(const TetcastDataset *dataset) { return dataset ? dataset->point_count : 0; }
 int64_t tetcast_dataset_cell_count(const TetcastDataset *dataset) { return dataset ? dataset->cell_count : 0; }
 
+TetcastCutInfo tetcast_dataset_cut(const TetcastDataset *dataset) {
+  return dataset ? dataset->tetrahedra.info : TetcastCutInfo();
+}
+
 TetcastStatus tetcast_dataset_mesh(const TetcastDataset *dataset, TetcastMesh **mesh) {
   if (mesh) *mesh = nullptr;
   if (!dataset || !mesh) {
