@@ -96,36 +96,40 @@ static void add_curved(Build *build, const Kind *kind, const double origin[3], c
   build_cell(build, kind->type, kind->nodes, nodes, volume);
 }
 
-/* Two cubes side by side along x, of cells of one kind. */
-static void add_pair(Build *build, const Kind *kind) {
+/* The cube at x, of cells of one kind. */
+static void add_cube(Build *build, const Kind *kind, int cube) {
   static const int edge[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
-  for (int cube = 0; cube < 2; ++cube) {
-    const double o[3] = {cube, 0, 0}, e[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    if (kind->shape == 8) add_curved(build, kind, o, e[0], e[1], e[2], 1);
-    if (kind->shape == 6) { /* triangles at the ends along z, mirrored in the second */
-      const double far[3] = {cube + 1, 1, 0}, back[2][3] = {{-1, 0, 0}, {0, -1, 0}};
-      add_curved(build, kind, o, e[0], e[1], e[2], 0.5);
-      add_curved(build, kind, far, back[0], back[1], e[2], 0.5);
-    }
-    if (kind->shape == 4) { /* from one corner to the opposite one, along edges in every order */
-      for (int k = 0; k < 6; ++k) {
-        double to[3][3] = {{0}};
-        for (int step = 0; step < 3; ++step) {
-          for (int later = step; later < 3; ++later) to[later][edge[k][step]] = 1;
-        }
-        const bool even = k < 3;
-        add_curved(build, kind, o, to[0], even ? to[1] : to[2], even ? to[2] : to[1], 1.0 / 6);
+  const double o[3] = {cube, 0, 0}, e[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  if (kind->shape == 8) add_curved(build, kind, o, e[0], e[1], e[2], 1);
+  if (kind->shape == 6) { /* triangles at the ends along z, mirrored in the second */
+    const double far[3] = {cube + 1, 1, 0}, back[2][3] = {{-1, 0, 0}, {0, -1, 0}};
+    add_curved(build, kind, o, e[0], e[1], e[2], 0.5);
+    add_curved(build, kind, far, back[0], back[1], e[2], 0.5);
+  }
+  if (kind->shape == 4) { /* from one corner to the opposite one, along edges in every order */
+    for (int k = 0; k < 6; ++k) {
+      double to[3][3] = {{0}};
+      for (int step = 0; step < 3; ++step) {
+        for (int later = step; later < 3; ++later) to[later][edge[k][step]] = 1;
       }
-    }
-    if (kind->shape == 5) { /* on each side of the cube, to its middle */
-      for (int d = 0; d < 3; ++d) {
-        const int x = (d + 1) % 3, y = (d + 2) % 3;
-        double down[3] = {-e[d][0], -e[d][1], -e[d][2]}, top[3] = {o[0] + e[d][0], o[1] + e[d][1], o[2] + e[d][2]};
-        add_curved(build, kind, o, e[x], e[y], e[d], 1.0 / 6);
-        add_curved(build, kind, top, e[y], e[x], down, 1.0 / 6);
-      }
+      const bool even = k < 3;
+      add_curved(build, kind, o, to[0], even ? to[1] : to[2], even ? to[2] : to[1], 1.0 / 6);
     }
   }
+  if (kind->shape == 5) { /* on each side of the cube, to its middle */
+    for (int d = 0; d < 3; ++d) {
+      const int x = (d + 1) % 3, y = (d + 2) % 3;
+      double down[3] = {-e[d][0], -e[d][1], -e[d][2]}, top[3] = {o[0] + e[d][0], o[1] + e[d][1], o[2] + e[d][2]};
+      add_curved(build, kind, o, e[x], e[y], e[d], 1.0 / 6);
+      add_curved(build, kind, top, e[y], e[x], down, 1.0 / 6);
+    }
+  }
+}
+
+/* Two cubes side by side along x. */
+static void add_pair(Build *build, const Kind *kind) {
+  add_cube(build, kind, 0);
+  add_cube(build, kind, 1);
 }
 
 static int64_t boundary_of(const Kind *kind, int subdivision) {
@@ -171,6 +175,27 @@ static void test_pairs(void **state) {
         result_release(&result);
         build_release(&build);
       }
+    }
+  }
+}
+
+/* Neighbours of other shapes share the points between them, too. */
+static void test_mixed(void **state) {
+  (void)state;
+  const int rows[2][4] = {{0, 5, 13, 0}, {2, 7, 14, 7}}; /* faces with eight nodes, with nine */
+  for (int row = 0; row < 2; ++row) {
+    for (int subdivision = 0; subdivision <= 6; ++subdivision) {
+      uint64_t seed = (uint64_t)subdivision + 1;
+      Build build = {0};
+      for (int cube = 0; cube < 4; ++cube) add_cube(&build, &kinds[rows[row][cube]], cube);
+      build_shuffle(&build, &seed);
+      Result result = cut_build(&build, 1, subdivision);
+      check_volumes(&build, &result, 1e-12);
+      check_faces(&result);
+      const int64_t n = subdivision ? subdivision : 2;
+      assert_int_equal(result.boundary, 2 * 18 * n * n);
+      result_release(&result);
+      build_release(&build);
     }
   }
 }
@@ -243,6 +268,7 @@ static void test_rational(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pairs), cmocka_unit_test(test_shape_functions), cmocka_unit_test(test_rational)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pairs), cmocka_unit_test(test_mixed),
+                                     cmocka_unit_test(test_shape_functions), cmocka_unit_test(test_rational)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
