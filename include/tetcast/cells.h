@@ -72,7 +72,7 @@ typedef struct TetcastCut TetcastCut;
  * without it. Where these overlap (none do in a convex cell with plane faces), and pyramids from the mean of the cell's vertices
  * overlap less, that becomes a vertex; so it does in polyhedra some of whose
  * faces are in one plane. Either way the tetrahedra's signed volumes add up to what the cell's surface encloses, positive for cells
- * whose nodes are in VTK's order; polyhedra are always positive.
+ * whose nodes are in VTK's order; wedges (about which programs disagree) and polyhedra are always positive.
  *
  * Curved cells are first cut into straight ones between points of their lattice, at which all fields are as the cell's shape functions say.
  * Neighbours share the points of the face between them.
@@ -108,7 +108,7 @@ typedef struct TetcastCutInfo {
   int segments[2];        /* the fewest and most pieces that one of their edges was cut into; 0, 0 without curved cells */
   int64_t centred;        /* cells, or parts of curved ones, that got a vertex in their middle */
   int64_t collapsed;      /* cells with a node twice */
-  int64_t inverted;       /* cells whose nodes are in the mirrored order; not told of polyhedra */
+  int64_t inverted;       /* cells whose nodes are in the mirrored order; not told of wedges and polyhedra */
   int64_t folded;         /* cells whose tetrahedra overlap by more than a millionth: far from convex, or tangled */
   int64_t open;           /* polyhedra whose faces don't close: an edge that has not two of them */
   int64_t empty;          /* cells that gave no tetrahedron */

@@ -13,19 +13,22 @@ static const double fold_limit = 1e-6;
 #define CORNERS(...) (const uint32_t[]){__VA_ARGS__}
 
 static const TcShape shapes[TC_SHAPES] = {
-  [TC_TETRAHEDRON] = {4, 4, SIZES(3, 3, 3, 3), CORNERS(0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2)},
-  [TC_HEXAHEDRON] = {8, 6, SIZES(4, 4, 4, 4, 4, 4),
-                     CORNERS(0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7), .hexahedron = true},
-  [TC_WEDGE] = {6, 5, SIZES(3, 3, 4, 4, 4), CORNERS(0, 1, 2, 3, 5, 4, 0, 3, 4, 1, 1, 4, 5, 2, 2, 5, 3, 0), .either_way = true},
-  [TC_PYRAMID] = {5, 5, SIZES(4, 3, 3, 3, 3), CORNERS(0, 3, 2, 1, 0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4)},
-  [TC_PENTAGONAL_PRISM] = {10, 7, SIZES(5, 5, 4, 4, 4, 4, 4),
-                           CORNERS(0, 4, 3, 2, 1, 5, 6, 7, 8, 9, 0, 1, 6, 5, 1, 2, 7, 6, 2, 3, 8, 7, 3, 4, 9, 8, 4, 0, 5, 9)},
-  [TC_HEXAGONAL_PRISM] = {12, 8, SIZES(6, 6, 4, 4, 4, 4, 4, 4),
-                          CORNERS(0, 5, 4, 3, 2, 1, 6, 7, 8, 9, 10, 11, 0, 1, 7, 6, 1, 2, 8, 7, 2, 3, 9, 8, 3, 4, 10, 9, 4, 5, 11, 10,
+  [TC_TETRAHEDRON] = {.corners = 4, .faces = 4, .size = SIZES(3, 3, 3, 3),
+    .corner = CORNERS(0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2)},
+  [TC_HEXAHEDRON] = {.corners = 8, .faces = 6, .size = SIZES(4, 4, 4, 4, 4, 4),
+    .corner = CORNERS(0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7), .hexahedron = true},
+  [TC_WEDGE] = {.corners = 6, .faces = 5, .size = SIZES(3, 3, 4, 4, 4),
+    .corner = CORNERS(0, 1, 2, 3, 5, 4, 0, 3, 4, 1, 1, 4, 5, 2, 2, 5, 3, 0), .either_way = true},
+  [TC_PYRAMID] = {.corners = 5, .faces = 5, .size = SIZES(4, 3, 3, 3, 3),
+    .corner = CORNERS(0, 3, 2, 1, 0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4)},
+  [TC_PENTAGONAL_PRISM] = {.corners = 10, .faces = 7, .size = SIZES(5, 5, 4, 4, 4, 4, 4),
+    .corner = CORNERS(0, 4, 3, 2, 1, 5, 6, 7, 8, 9, 0, 1, 6, 5, 1, 2, 7, 6, 2, 3, 8, 7, 3, 4, 9, 8, 4, 0, 5, 9)},
+  [TC_HEXAGONAL_PRISM] = {.corners = 12, .faces = 8, .size = SIZES(6, 6, 4, 4, 4, 4, 4, 4),
+    .corner = CORNERS(0, 5, 4, 3, 2, 1, 6, 7, 8, 9, 10, 11, 0, 1, 7, 6, 1, 2, 8, 7, 2, 3, 9, 8, 3, 4, 10, 9, 4, 5, 11, 10,
                                   5, 0, 6, 11)},
   /* Between two tetrahedra of a lattice: corners at (1,0,0), (0,1,0), (0,0,1), (1,1,0), (1,0,1), (0,1,1). */
-  [TC_OCTAHEDRON] = {6, 8, SIZES(3, 3, 3, 3, 3, 3, 3, 3),
-                     CORNERS(0, 2, 1, 3, 5, 4, 1, 2, 5, 0, 3, 4, 0, 4, 2, 1, 5, 3, 0, 1, 3, 2, 4, 5)},
+  [TC_OCTAHEDRON] = {.corners = 6, .faces = 8, .size = SIZES(3, 3, 3, 3, 3, 3, 3, 3),
+    .corner = CORNERS(0, 2, 1, 3, 5, 4, 1, 2, 5, 0, 3, 4, 0, 4, 2, 1, 5, 3, 0, 1, 3, 2, 4, 5)},
 };
 
 const TcShape *tc_shape(TcShapeName name) { return &shapes[name]; }
