@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/base.h"
+#include "mesh/cut.h"
 #include "mesh/mesh.h"
 #include "optics/transfer.h"
 #include "render/render.h"
@@ -143,6 +144,61 @@ TetcastStatus tetcast_mesh_health(TetcastContext *context, const TetcastMesh *me
   CHECK_GIVEN(context, health);
   return tc_mesh_health(context, mesh, health);
 }
+
+/* ── cells ── */
+
+TetcastCellsDesc tetcast_cells_desc_default(void) { return (TetcastCellsDesc){.cookie = TC_COOKIE, .type = TETCAST_CELL_HEXAHEDRON}; }
+
+static TetcastStatus check_cells(TetcastContext *context, const TetcastCellsDesc *desc) {
+  const struct {
+    const TetcastArray *array;
+    const char *name;
+    bool integers;
+  } arrays[] = {{&desc->vertices, "vertices", false},   {&desc->offsets, "offsets", true},
+                {&desc->connectivity, "connectivity", true}, {&desc->faces, "faces", true},
+                {&desc->face_offsets, "face_offsets", true}, {&desc->orders, "orders", false},
+                {&desc->rational, "rational", false}};
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; ++i) {
+    const TetcastStatus status = check_array(context, arrays[i].array, arrays[i].name);
+    if (status) return status;
+    const TetcastType type = arrays[i].array->type;
+    if (arrays[i].array->count > 0 && (tc_type_size(type) == 0 || (arrays[i].integers && tc_type_is_float(type)))) {
+      return ARGUMENT(context, "%s must be of %s type", arrays[i].name, arrays[i].integers ? "an integer" : "a numeric");
+    }
+  }
+  if (desc->vertices.count > 0 && !tc_type_is_float(desc->vertices.type)) return ARGUMENT(context, "vertices must be float32 or float64");
+  if (desc->subdivision < 0 || desc->subdivision > TETCAST_MAX_SUBDIVISION) {
+    return ARGUMENT(context, "a subdivision of %d: must be in [0, %d]", desc->subdivision, (int)TETCAST_MAX_SUBDIVISION);
+  }
+  if (desc->offsets.count == 0 && (desc->types || tc_cell_nodes((unsigned)desc->type) == 0)) {
+    return ARGUMENT(context, "cells that are not all of one type with a fixed number of nodes need offsets");
+  }
+  if (desc->rational.count > 0 && desc->rational.count != desc->vertices.count) {
+    return ARGUMENT(context, "%" PRId64 " rational weights for %" PRId64 " vertices", desc->rational.count, desc->vertices.count);
+  }
+  return TETCAST_OK;
+}
+
+TetcastStatus tetcast_cells_cut(TetcastContext *context, const TetcastCellsDesc *desc, TetcastCut **cut) {
+  CHECK_OUT(context, cut);
+  CHECK_GIVEN(context, context);
+  CHECK_DESC(context, desc);
+  const TetcastStatus status = check_cells(context, desc);
+  return status ? status : tc_cells_cut(context, desc, cut);
+}
+
+void tetcast_cut_destroy(TetcastCut **cut) {
+  if (!cut) return;
+  tc_cut_destroy(*cut);
+  *cut = NULL;
+}
+
+TetcastArray tetcast_cut_tetrahedra(const TetcastCut *cut) { return tc_cut_tetrahedra(cut); }
+TetcastArray tetcast_cut_sources(const TetcastCut *cut) { return tc_cut_sources(cut); }
+bool tetcast_cut_interpolate(const TetcastCut *cut, const TetcastArray *values, int components, double *result) {
+  return tc_cut_interpolate(cut, values, components, result);
+}
+void tetcast_cut_info(const TetcastCut *cut, TetcastCutInfo *info) { *info = *tc_cut_info(cut); }
 
 TetcastFieldDesc tetcast_field_desc_default(void) { return (TetcastFieldDesc){.cookie = TC_COOKIE}; }
 

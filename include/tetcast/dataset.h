@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include <tetcast/cells.h>
 #include <tetcast/context.h>
 #include <tetcast/field.h>
 #include <tetcast/mesh.h>
@@ -91,6 +92,8 @@ TETCAST_API bool tetcast_dataset_time(const TetcastDataset *dataset, int64_t i, 
 
 /* The step that was read; 0 for files without. */
 TETCAST_API int64_t tetcast_dataset_step(const TetcastDataset *dataset);
+/* What cutting its cells came to, all 0 when all of them were tetrahedra already. Vertices that were added come after the file's points. */
+TETCAST_API TetcastCutInfo tetcast_dataset_cut(const TetcastDataset *dataset);
 
 /* The tetrahedra. Arrays may be the dataset's own: it must outlive the mesh, which the caller destroys. */
 TETCAST_API TetcastStatus tetcast_dataset_mesh(const TetcastDataset *dataset, TetcastMesh **mesh);

@@ -5,6 +5,7 @@
 
 #include <tetcast/array.h>
 #include <tetcast/camera.h>
+#include <tetcast/cells.h>
 #include <tetcast/context.h>
 #include <tetcast/field.h>
 #include <tetcast/frame.h>

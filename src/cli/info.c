@@ -181,6 +181,27 @@ static void print_some(const char *name, int64_t count, const char *unit) {
     printf("  %-20s %" PRId64 "%s\n", name, count, unit);
 }
 
+/* What is worth knowing about how the cells became tetrahedra. */
+static void print_cut(const TetcastCutInfo *cut) {
+  const struct {
+    const char *name;
+    int64_t count;
+  } rows[] = {{"curved cells", cut->curved},     {"added vertices", cut->added_vertices},
+              {"collapsed cells", cut->collapsed}, {"inverted cells", cut->inverted},
+              {"overlapping cells", cut->folded}, {"open polyhedra", cut->open},
+              {"cells without inside", cut->empty}, {"oversized cells", cut->oversized}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    if (rows[i].count == 0)
+      continue;
+    printf("  %-20s %" PRId64, rows[i].name, rows[i].count);
+    if (i == 0 && cut->segments[0] < cut->segments[1])
+      printf(", edges in %d to %d", cut->segments[0], cut->segments[1]);
+    else if (i == 0)
+      printf(", edges in %d", cut->segments[0]);
+    putchar('\n');
+  }
+}
+
 static void print_text(const Info *info) {
   printf("file          %s\n", info->path);
   print_steps(info);
@@ -200,6 +221,8 @@ static void print_text(const Info *info) {
     printf("  %-20s %" PRId64 "\n", name, count);
   print_some("ghost", pieces.ghost_cells, "");
   printf("tetrahedra    %" PRId64 "\n", info->tetrahedra);
+  const TetcastCutInfo cut = info->vtk->dataset_cut(info->dataset);
+  print_cut(&cut);
   for (int i = 0; i < 3; i++)
     printf("%-13s %c [%.9g, %.9g]\n", i ? "" : "bounds", "xyz"[i], info -> bounds[2 * i], info -> bounds[2 * i + 1]);
   print_arrays(info);

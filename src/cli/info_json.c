@@ -80,6 +80,22 @@ static void set_steps_and_blocks(const Info *info, json_t *root) {
   json_object_set_new(root, "pieces", pieces_object(&pieces));
 }
 
+static json_t *cut_object(const TetcastCutInfo *cut) {
+  json_t *object = json_object();
+  json_object_set_new(object, "cells", json_integer(cut->cells));
+  json_object_set_new(object, "added_vertices", json_integer(cut->added_vertices));
+  json_object_set_new(object, "curved", json_integer(cut->curved));
+  json_object_set_new(object, "segments", json_pack("[ii]", cut->segments[0], cut->segments[1]));
+  json_object_set_new(object, "centred", json_integer(cut->centred));
+  json_object_set_new(object, "collapsed", json_integer(cut->collapsed));
+  json_object_set_new(object, "inverted", json_integer(cut->inverted));
+  json_object_set_new(object, "folded", json_integer(cut->folded));
+  json_object_set_new(object, "open", json_integer(cut->open));
+  json_object_set_new(object, "empty", json_integer(cut->empty));
+  json_object_set_new(object, "oversized", json_integer(cut->oversized));
+  return object;
+}
+
 void info_print_json(const Info *info) {
   json_t *root = json_object();
   json_object_set_new(root, "file", text_or_null(info->path));
@@ -93,6 +109,8 @@ void info_print_json(const Info *info) {
     json_object_set_new(types, name, json_integer(count));
   json_object_set_new(root, "cell_types", types);
   json_object_set_new(root, "tetrahedra", json_integer(info->tetrahedra));
+  const TetcastCutInfo cut = info->vtk->dataset_cut(info->dataset);
+  json_object_set_new(root, "cut", cut_object(&cut));
   json_object_set_new(root, "vertices", json_integer(info->vertices));
   json_object_set_new(root, "bounds", cli_json_array(info->bounds, 6));
   json_t *arrays = json_array();

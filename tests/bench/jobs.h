@@ -11,6 +11,10 @@
 #include "scenes.h"
 #include "tet.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct Options {
   unsigned run;        /* RUN_SMALL, … */
   int rounds;          /* 0: what the scene says */
@@ -44,8 +48,15 @@ void job_features(const Job *job);
 /* Writes the mesh as .vtu; reads it; renders it with the command. */
 void job_file(const Job *job);
 
+/* Cuts as many hexahedra as the mesh has cubes, tetcast beside VTK. */
+void job_cells(const Job *job);
+
 /* One measurement of a frame: repeated while that is a matter of moments, the median of wall and CPU time. */
 Clock measure_frame(const Job *job, Tet *tet, const TetcastCamera *camera, const TetcastRenderDesc *desc,
                     TetcastFrame *frame, TetcastRenderStats *stats);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

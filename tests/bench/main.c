@@ -95,7 +95,8 @@ static bool run_scene(const Options *options, const SceneDesc *scene) {
     const char *name;
   } jobs[] = {{job_memory, 0, "memory"}, {job_memory_vtk, 0, "VTK's memory"}, {job_frames, 0, "frames"},
               {job_visible, SCENE_VISIBLE, "transfer functions"}, {job_features, SCENE_FEATURES, "features"},
-              {job_file, SCENE_FILE, "files"}};
+              {job_file, SCENE_FILE, "files"},
+              {job_cells, SCENE_CELLS, "cutting cells"}};
   if (scene->n == 0 && !options->body) {
     fprintf(stderr, "%s: skipped, needs TetGen\n", scene->name);
     return true;

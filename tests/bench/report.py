@@ -132,6 +132,10 @@ def goals(results):
             if b['tetrahedra'] == 8 * a['tetrahedra']:
                 out.add('frame when the mesh grows 8 ×', f'{small} → {large}', ratio(b, a), '≤', 2.6, '×')
     for scene in results.scenes():
+        for row in results.all(task='cut', scene=scene, renderer='tetcast'):
+            if row['tetrahedra'] > 100000:
+                vtk = results.one(task='cut', scene=scene, renderer='VTK', case=row['case'])
+                out.add(f"hexahedra cut, {row['case']}, vs vtkDataSetTriangleFilter", scene, ratio(vtk, row), '≥', 50, '×')
         preparation(results, scene, out)
         changes(results, scene, out)
     return out.rows()
@@ -220,7 +224,7 @@ def features(results):
 
 def others(results):
     for row in results.rows:
-        if row['task'] in ('read', 'file to picture') or \
+        if row['task'] in ('cut', 'read', 'file to picture') or \
            row['task'] == 'transfer function' and row['renderer'] == TETCAST or \
            row['task'] == 'frame' and (row['pixels'] != results.pixels or row['case'] not in ('soft', 'sharp')):
             yield (row['scene'], row['task'], row['case'], '' if math.isnan(row['pixels']) else count(row['pixels']) + '²',

@@ -7,6 +7,10 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct Clock {
   double wall, cpu; /* seconds; cpu: of all threads of the process */
 } Clock;
@@ -60,5 +64,9 @@ void row_write(const Row *row);
 
 /* Ends the program with a line on stderr unless `ok`. */
 void must(bool ok, const char *what);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -11,12 +11,17 @@
 
 #include "mesh.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* How much is measured on a mesh, beyond preparation, memory and frames. */
 enum {
   SCENE_SIZES = 1,    /* pictures of several sizes */
   SCENE_VISIBLE = 2,  /* few of the cells visible; change of the transfer function */
   SCENE_FEATURES = 4, /* what each feature costs */
-  SCENE_FILE = 8      /* reading a file, and the command from start to end */
+  SCENE_FILE = 8,     /* reading a file, and the command from start to end */
+  SCENE_CELLS = 16    /* cutting hexahedra */
 };
 
 /* Which runs have it; a bit each. */
@@ -63,5 +68,9 @@ double scene_threshold(const BenchMesh *mesh, double fraction);
 
 /* Refers to `transfer`. */
 TetcastTransferFunctionDesc transfer_desc(const Transfer *transfer);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -9,6 +9,10 @@
 #include "rows.h"
 #include "scenes.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct Tet {
   TetcastContext *context;
   TetcastMesh *mesh;
@@ -31,5 +35,9 @@ Clock tet_transfer(Tet *tet, const Transfer *transfer);
 TetcastFrame *tet_frame(Tet *tet, int pixels, TetcastType type, uint32_t channels);
 Clock tet_render(Tet *tet, const TetcastCamera *camera, const TetcastRenderDesc *desc, TetcastFrame *frame,
                  TetcastRenderStats *stats); /* desc, stats: may be NULL */
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

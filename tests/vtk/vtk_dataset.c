@@ -389,7 +389,11 @@ static void test_conforming(void **state) {
   } cases[] = {
       {"volumes/disk_out_ref.vtu", 2 * 1988, 0},     {"volumes/fire_ug.vtu", 2 * 3546, 0},
       {"cells/QuadraticTetra.vtu", 4 * 48, 8},       {"cells/hybridHexPrismMesh.vtk", 632, 1},
-      {"cells/pebi3d_with_properties.vtu", 2056, 1},
+      {"cells/pebi3d_with_properties.vtu", 2056, 1}, {"cells/supportedElements.vtk", 238, 119.491291493},
+      {"cells/supportedElementsAsVTKPolyhedra.vtk", 238, 119.491291493},
+      {"cells/polyhedron2pieces.vtu", 28, 8.0 / 3},  {"cells/CylinderQuadratic.vtk", 2904, 3.056082092e-05},
+      {"cells/uGridEx.vtk", 28, 7.0 / 3},            {"cells/AngularSector.vtk", 8880, 4.883771487e-4},
+      {"volumes/bluntfin_hex.vtu", 13516, 931.1626964},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     TetcastDataset *dataset = read_good(fixture, data_path(fixture, cases[i].name));
@@ -398,10 +402,62 @@ static void test_conforming(void **state) {
     TetcastMeshHealth health;
     assert_int_equal(tetcast_mesh_health(fixture->context, mesh, &health), TETCAST_OK);
     assert_int_equal(health.boundary_faces, cases[i].boundary_faces);
+    assert_int_equal(health.nonmanifold_faces, 0);
     if (cases[i].volume > 0) assert_true(fabs(health.volume / cases[i].volume - 1) < 1e-6);
     tetcast_mesh_destroy(&mesh);
     tetcast_dataset_destroy(&dataset);
   }
+}
+
+/* A quadratic hexahedron, which has no nodes in the middle of its faces: vertices come after the file's, and every
+ * kind of array has values there. */
+static void test_added_vertices(void **state) {
+  Fixture *fixture = *state;
+  static const double at[20][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2}, {0, 2, 2}, {1, 0, 0}, {2, 1, 0},
+                                   {1, 2, 0}, {0, 1, 0}, {1, 0, 2}, {2, 1, 2}, {1, 2, 2}, {0, 1, 2}, {0, 0, 1}, {2, 0, 1}, {2, 2, 1}, {0, 2, 1}};
+  char text[8192], part[256];
+  int length = snprintf(text, sizeof text, "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 20 float\n");
+  for (int i = 0; i < 20; ++i) length += snprintf(text + length, sizeof text - (size_t)length, "%g %g %g\n", at[i][0], at[i][1], at[i][2]);
+  length += snprintf(text + length, sizeof text - (size_t)length, "CELLS 1 21\n20");
+  for (int i = 0; i < 20; ++i) length += snprintf(text + length, sizeof text - (size_t)length, " %d", i);
+  length += snprintf(text + length, sizeof text - (size_t)length,
+                     "\nCELL_TYPES 1\n25\nCELL_DATA 1\nSCALARS c int\nLOOKUP_TABLE default\n7\nPOINT_DATA 20\nFIELD F 4\n");
+  static const char *const arrays[] = {"real 1 20 float", "whole 1 20 int", "tiny 1 20 unsigned_char", "pair 2 20 double"};
+  for (int a = 0; a < 4; ++a) {
+    length += snprintf(text + length, sizeof text - (size_t)length, "%s\n", arrays[a]);
+    for (int i = 0; i < 20; ++i) { /* x² + 2 y z, a function that the cell has exactly */
+      const double value = at[i][0] * at[i][0] + 2 * at[i][1] * at[i][2];
+      if (a == 3) snprintf(part, sizeof part, "%g %g ", 3 * value, 4 * value);
+      else snprintf(part, sizeof part, "%g ", value);
+      length += snprintf(text + length, sizeof text - (size_t)length, "%s", part);
+    }
+  }
+  TetcastDataset *dataset = read_good(fixture, text_file(fixture, "curved.vtk", text));
+  assert_int_equal(tetcast_dataset_point_count(dataset), 20);
+  TetcastMesh *mesh;
+  assert_int_equal(tetcast_dataset_mesh(dataset, &mesh), TETCAST_OK);
+  assert_int_equal(tetcast_mesh_vertex_count(mesh), 27);
+  assert_int_equal(tetcast_mesh_tetrahedron_count(mesh), 48);
+  static const char *const selectors[] = {"real", "whole", "tiny", "pair:0", "pair:mag"};
+  static const double factors[] = {1, 1, 1, 3, 5};
+  for (int s = 0; s < 5; ++s) {
+    TetcastField *field;
+    assert_int_equal(tetcast_dataset_field(dataset, selectors[s], &field, NULL), TETCAST_OK);
+    assert_int_equal(tetcast_field_values(field).count, 27);
+    for (int64_t i = 0; i < 27; ++i) {
+      double p[3];
+      tetcast_mesh_vertex(mesh, i, p);
+      assert_true(fabs(tetcast_field_value(field, i) - factors[s] * (p[0] * p[0] + 2 * p[1] * p[2])) < 1e-12);
+    }
+    tetcast_field_destroy(&field);
+  }
+  TetcastField *field;
+  assert_int_equal(tetcast_dataset_field(dataset, "c", &field, NULL), TETCAST_OK);
+  assert_int_equal(tetcast_field_values(field).count, 48);
+  assert_true(tetcast_field_value(field, 47) == 7);
+  tetcast_field_destroy(&field);
+  tetcast_mesh_destroy(&mesh);
+  tetcast_dataset_destroy(&dataset);
 }
 
 /* Several threads read at a time, each hears of its own files only. */
@@ -443,7 +499,7 @@ int main(void) {
       TEST(test_legacy_attributes), TEST(test_content_beats_extension),
       TEST(test_encodings),         TEST(test_pieces),
       TEST(test_others_files),      TEST(test_conforming),
-      TEST(test_threads),
+      TEST(test_added_vertices),    TEST(test_threads),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

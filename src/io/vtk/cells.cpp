@@ -4,25 +4,21 @@
 
 #include <algorithm>
 #include <array>
-#include <climits>
+#include <new>
 #include <string>
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDataSetAttributes.h>
-#include <vtkGenericCell.h>
-#include <vtkIdList.h>
 #include <vtkIdTypeArray.h>
-#include <vtkNew.h>
-#include <vtkOrderedTriangulator.h>
-#include <vtkPoints.h>
+#include <vtkPointData.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
 namespace {
 
-enum Way { IGNORED, TETRAHEDRON, ORDERED, OWN, REFUSED }; // how a cell becomes tetrahedra
+enum Way { IGNORED, CUT, REFUSED }; // whether a cell becomes tetrahedra
 
 struct CellType {
   int id;
@@ -31,8 +27,6 @@ struct CellType {
   int points; // 0: any number
 };
 
-// Linear cells are cut by the order of their point indices, so that neighbours agree about the diagonal of the face
-// between them. Nonlinear cells and polyhedra cut themselves, which agrees for them, while the ordered way does not.
 const CellType cell_types[] = {
     {VTK_EMPTY_CELL, "empty cell", IGNORED, 0},
     {VTK_VERTEX, "vertex", IGNORED, 0},
@@ -44,32 +38,32 @@ const CellType cell_types[] = {
     {VTK_POLYGON, "polygon", IGNORED, 0},
     {VTK_PIXEL, "pixel", IGNORED, 0},
     {VTK_QUAD, "quadrilateral", IGNORED, 0},
-    {VTK_TETRA, "tetrahedron", TETRAHEDRON, 4},
-    {VTK_VOXEL, "voxel", ORDERED, 8},
-    {VTK_HEXAHEDRON, "hexahedron", ORDERED, 8},
-    {VTK_WEDGE, "wedge", ORDERED, 6},
-    {VTK_PYRAMID, "pyramid", ORDERED, 5},
-    {VTK_PENTAGONAL_PRISM, "pentagonal prism", ORDERED, 10},
-    {VTK_HEXAGONAL_PRISM, "hexagonal prism", ORDERED, 12},
+    {VTK_TETRA, "tetrahedron", CUT, 4},
+    {VTK_VOXEL, "voxel", CUT, 8},
+    {VTK_HEXAHEDRON, "hexahedron", CUT, 8},
+    {VTK_WEDGE, "wedge", CUT, 6},
+    {VTK_PYRAMID, "pyramid", CUT, 5},
+    {VTK_PENTAGONAL_PRISM, "pentagonal prism", CUT, 10},
+    {VTK_HEXAGONAL_PRISM, "hexagonal prism", CUT, 12},
     {VTK_QUADRATIC_EDGE, "quadratic line", IGNORED, 0},
     {VTK_QUADRATIC_TRIANGLE, "quadratic triangle", IGNORED, 0},
     {VTK_QUADRATIC_QUAD, "quadratic quadrilateral", IGNORED, 0},
-    {VTK_QUADRATIC_TETRA, "quadratic tetrahedron", OWN, 10},
-    {VTK_QUADRATIC_HEXAHEDRON, "quadratic hexahedron", OWN, 20},
-    {VTK_QUADRATIC_WEDGE, "quadratic wedge", OWN, 15},
-    {VTK_QUADRATIC_PYRAMID, "quadratic pyramid", OWN, 13},
+    {VTK_QUADRATIC_TETRA, "quadratic tetrahedron", CUT, 10},
+    {VTK_QUADRATIC_HEXAHEDRON, "quadratic hexahedron", CUT, 20},
+    {VTK_QUADRATIC_WEDGE, "quadratic wedge", CUT, 15},
+    {VTK_QUADRATIC_PYRAMID, "quadratic pyramid", CUT, 13},
     {VTK_BIQUADRATIC_QUAD, "biquadratic quadrilateral", IGNORED, 0},
-    {VTK_TRIQUADRATIC_HEXAHEDRON, "triquadratic hexahedron", OWN, 27},
+    {VTK_TRIQUADRATIC_HEXAHEDRON, "triquadratic hexahedron", CUT, 27},
     {VTK_QUADRATIC_LINEAR_QUAD, "quadratic-linear quadrilateral", IGNORED, 0},
-    {VTK_QUADRATIC_LINEAR_WEDGE, "quadratic-linear wedge", OWN, 12},
-    {VTK_BIQUADRATIC_QUADRATIC_WEDGE, "biquadratic-quadratic wedge", OWN, 18},
-    {VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON, "biquadratic-quadratic hexahedron", OWN, 24},
+    {VTK_QUADRATIC_LINEAR_WEDGE, "quadratic-linear wedge", CUT, 12},
+    {VTK_BIQUADRATIC_QUADRATIC_WEDGE, "biquadratic-quadratic wedge", CUT, 18},
+    {VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON, "biquadratic-quadratic hexahedron", CUT, 24},
     {VTK_BIQUADRATIC_TRIANGLE, "biquadratic triangle", IGNORED, 0},
     {VTK_CUBIC_LINE, "cubic line", IGNORED, 0},
     {VTK_QUADRATIC_POLYGON, "quadratic polygon", IGNORED, 0},
-    {VTK_TRIQUADRATIC_PYRAMID, "triquadratic pyramid", OWN, 19},
+    {VTK_TRIQUADRATIC_PYRAMID, "triquadratic pyramid", CUT, 19},
     {VTK_CONVEX_POINT_SET, "convex point set", REFUSED, 0},
-    {VTK_POLYHEDRON, "polyhedron", OWN, 0},
+    {VTK_POLYHEDRON, "polyhedron", CUT, 0},
     {VTK_PARAMETRIC_CURVE, "parametric curve", IGNORED, 0},
     {VTK_PARAMETRIC_SURFACE, "parametric surface", IGNORED, 0},
     {VTK_PARAMETRIC_TRI_SURFACE, "parametric triangle", IGNORED, 0},
@@ -87,16 +81,16 @@ const CellType cell_types[] = {
     {VTK_LAGRANGE_CURVE, "Lagrange curve", IGNORED, 0},
     {VTK_LAGRANGE_TRIANGLE, "Lagrange triangle", IGNORED, 0},
     {VTK_LAGRANGE_QUADRILATERAL, "Lagrange quadrilateral", IGNORED, 0},
-    {VTK_LAGRANGE_TETRAHEDRON, "Lagrange tetrahedron", REFUSED, 0},
-    {VTK_LAGRANGE_HEXAHEDRON, "Lagrange hexahedron", REFUSED, 0},
-    {VTK_LAGRANGE_WEDGE, "Lagrange wedge", REFUSED, 0},
+    {VTK_LAGRANGE_TETRAHEDRON, "Lagrange tetrahedron", CUT, 0},
+    {VTK_LAGRANGE_HEXAHEDRON, "Lagrange hexahedron", CUT, 0},
+    {VTK_LAGRANGE_WEDGE, "Lagrange wedge", CUT, 0},
     {VTK_LAGRANGE_PYRAMID, "Lagrange pyramid", REFUSED, 0},
     {VTK_BEZIER_CURVE, "Bezier curve", IGNORED, 0},
     {VTK_BEZIER_TRIANGLE, "Bezier triangle", IGNORED, 0},
     {VTK_BEZIER_QUADRILATERAL, "Bezier quadrilateral", IGNORED, 0},
-    {VTK_BEZIER_TETRAHEDRON, "Bezier tetrahedron", REFUSED, 0},
-    {VTK_BEZIER_HEXAHEDRON, "Bezier hexahedron", REFUSED, 0},
-    {VTK_BEZIER_WEDGE, "Bezier wedge", REFUSED, 0},
+    {VTK_BEZIER_TETRAHEDRON, "Bezier tetrahedron", CUT, 0},
+    {VTK_BEZIER_HEXAHEDRON, "Bezier hexahedron", CUT, 0},
+    {VTK_BEZIER_WEDGE, "Bezier wedge", CUT, 0},
     {VTK_BEZIER_PYRAMID, "Bezier pyramid", REFUSED, 0},
 };
 
@@ -110,7 +104,7 @@ const CellType *find_type(int id) {
 using TypeTable = std::array<const CellType *, 256>; // null: no such type
 
 // Counts the types and refuses cells that nothing could be made of.
-TypeTable survey(const char *path, vtkUnstructuredGrid *grid, tcv::Tetrahedra *result) {
+void survey(const char *path, vtkUnstructuredGrid *grid, tcv::Tetrahedra *result) {
   const vtkUnsignedCharArray *types = grid->GetCellTypesArray();
   const int64_t cells = grid->GetNumberOfCells();
   if (!types || types->GetNumberOfValues() != cells) {
@@ -131,7 +125,6 @@ TypeTable survey(const char *path, vtkUnstructuredGrid *grid, tcv::Tetrahedra *r
       tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: a %s has %d points, not %lld", path, cell, type->name, type->points,
                 points);
     }
-    result->oversized += type->points && points > type->points;
     ++counts[id];
   }
   bool volumetric = false;
@@ -152,156 +145,111 @@ TypeTable survey(const char *path, vtkUnstructuredGrid *grid, tcv::Tetrahedra *r
     }
     tcv::fail(TETCAST_ERROR_DATA, "%s: holds no volumetric cells, only %s", path, list.c_str());
   }
-  return table;
 }
-
-// VTK walks the faces of a polyhedron unchecked.
-void check_polyhedron(const char *path, vtkUnstructuredGrid *grid, int64_t i, vtkIdType size, const vtkIdType *points) {
-  const vtkIdTypeArray *faces = grid->GetFaces(), *locations = grid->GetFaceLocations();
-  const int64_t end = faces ? faces->GetNumberOfValues() : 0;
-  int64_t at = locations && i < locations->GetNumberOfValues() ? locations->GetValue(i) : -1;
-  const int64_t count = at >= 0 && at < end ? faces->GetValue(at) : -1;
-  bool good = count >= 4 && count <= end;
-  ++at;
-  for (int64_t face = 0; good && face < count; ++face) {
-    const int64_t corners = at < end ? faces->GetValue(at) : -1;
-    good = corners >= 3 && corners < end - at;
-    for (int64_t j = 1; good && j <= corners; ++j) {
-      good = std::find(points, points + size, faces->GetValue(at + j)) != points + size;
-    }
-    at += corners + 1;
-  }
-  if (!good) {
-    tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: the list of the polyhedron's faces is damaged", path,
-              static_cast<long long>(i));
-  }
-}
-
-class Cutter {
-public:
-  explicit Cutter(tcv::Tetrahedra *result, bool keep_source) : result_(result), keep_source_(keep_source) {
-    triangulator_->PreSortedOff();
-    triangulator_->UseTemplatesOn();
-  }
-
-  void tetrahedron(int64_t cell, const vtkIdType *points) { emit(cell, points); }
-
-  // As vtkDataSetTriangleFilter does it.
-  void ordered(int64_t i, vtkGenericCell *cell, int count) {
-    static const int upside_down[6] = {3, 4, 5, 0, 1, 2}; // VTK's wedge faces the other way than its other cells
-    double *parametric = cell->GetParametricCoords();
-    triangulator_->InitTriangulation(0, 1, 0, 1, 0, 1, count);
-    for (int j = 0; j < count; ++j) {
-      const int k = cell->GetCellType() == VTK_WEDGE ? upside_down[j] : j;
-      double position[3];
-      cell->GetPoints()->GetPoint(k, position);
-      triangulator_->InsertPoint(cell->GetPointId(k), position, parametric + 3 * j, 0);
-    }
-    triangulator_->TemplateTriangulate(cell->GetCellType(), count, cell->GetNumberOfEdges());
-    pieces_->Reset();
-    triangulator_->AddTetras(0, pieces_);
-    const int64_t pieces = pieces_->GetNumberOfCells();
-    for (int64_t piece = 0; piece < pieces; ++piece) {
-      vtkIdType size;
-      const vtkIdType *points;
-      pieces_->GetCellAtId(piece, size, points);
-      cut(i, points);
-    }
-    result_->uncut += pieces == 0;
-  }
-
-  void own(int64_t i, vtkGenericCell *cell) {
-    cell->Triangulate(0, ids_, positions_);
-    const int64_t pieces = ids_->GetNumberOfIds() / 4;
-    for (int64_t piece = 0; piece < pieces; ++piece) cut(i, ids_->GetPointer(4 * piece));
-    result_->uncut += pieces == 0;
-  }
-
-private:
-  // Cells that have a point twice (a wedge written as a hexahedron) give flat pieces, which nothing can be seen of.
-  void cut(int64_t cell, const vtkIdType *p) {
-    if (p[0] != p[1] && p[0] != p[2] && p[0] != p[3] && p[1] != p[2] && p[1] != p[3] && p[2] != p[3]) emit(cell, p);
-  }
-
-  void emit(int64_t cell, const vtkIdType *points) {
-    for (int j = 0; j < 4; ++j) result_->cut.push_back(static_cast<int32_t>(points[j]));
-    if (keep_source_) result_->source.push_back(static_cast<int32_t>(cell));
-  }
-
-  tcv::Tetrahedra *result_;
-  bool keep_source_;
-  vtkNew<vtkOrderedTriangulator> triangulator_;
-  vtkNew<vtkCellArray> pieces_;
-  vtkNew<vtkIdList> ids_;
-  vtkNew<vtkPoints> positions_;
-};
 
 // Copies that another piece of a distributed mesh has as well, and cells that are switched off.
-bool is_ghost(const vtkUnsignedCharArray *ghosts, int64_t cell) {
-  const int hidden =
-      vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::REFINEDCELL | vtkDataSetAttributes::HIDDENCELL;
-  return ghosts && (ghosts->GetValue(cell) & hidden);
+const int ghost_bits =
+    vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::REFINEDCELL | vtkDataSetAttributes::HIDDENCELL;
+
+// A view of numbers of any type; copied to `storage` if they are of one that TetcastType lacks. None is a view of nothing.
+TetcastArray numbers_of(vtkDataArray *array, std::vector<double> *storage) {
+  if (!array) return {};
+  if (tcv::type_of(array) != TETCAST_TYPE_NONE) return tcv::view_of(array);
+  const int components = array->GetNumberOfComponents();
+  storage->resize(static_cast<size_t>(array->GetNumberOfTuples()) * static_cast<size_t>(components));
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i) {
+    array->GetTuple(i, storage->data() + static_cast<size_t>(i) * static_cast<size_t>(components));
+  }
+  TetcastArray view = {};
+  view.data = storage->data();
+  view.type = TETCAST_TYPE_FLOAT64;
+  view.count = array->GetNumberOfTuples();
+  return view;
 }
 
-void cut_all(const char *path, vtkUnstructuredGrid *grid, const TypeTable &table, const vtkUnsignedCharArray *ghosts,
-             tcv::Tetrahedra *result) {
-  const int64_t cells = grid->GetNumberOfCells();
-  if (cells >= INT32_MAX || grid->GetNumberOfPoints() >= INT32_MAX) {
-    tcv::fail(TETCAST_ERROR_LIMIT, "%s: %lld cells and %lld points are more than can be addressed", path,
-              static_cast<long long>(cells), static_cast<long long>(grid->GetNumberOfPoints()));
-  }
-  size_t estimate = 0;
-  for (const auto &[name, count] : result->types) {
-    const std::string type = name;
-    estimate += static_cast<size_t>(count) * (type == "hexahedron" || type == "voxel" ? 6 : type == "wedge" ? 3 : 1);
-  }
-  const bool keep_source = grid->GetCellData()->GetNumberOfArrays() > 0;
-  result->cut.reserve(4 * estimate);
-  if (keep_source) result->source.reserve(estimate);
+void remember(void *user, TetcastSeverity, const char *text) { *static_cast<std::string *>(user) = text; }
 
-  Cutter cutter(result, keep_source);
-  vtkNew<vtkGenericCell> cell;
-  for (int64_t i = 0; i < cells; ++i) {
-    const CellType &type = *table[grid->GetCellTypesArray()->GetValue(i)];
-    if (type.way == IGNORED || is_ghost(ghosts, i)) continue;
-    vtkIdType size;
-    const vtkIdType *points;
-    grid->GetCells()->GetCellAtId(i, size, points);
-    if (type.way == TETRAHEDRON) {
-      cutter.tetrahedron(i, points);
-      continue;
-    }
-    if (type.id == VTK_POLYHEDRON) check_polyhedron(path, grid, i, size, points);
-    grid->GetCell(i, cell);
-    if (type.way == ORDERED) cutter.ordered(i, cell, type.points);
-    else cutter.own(i, cell);
+void cut_all(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, const unsigned char *hidden,
+             const tcv::CutOptions &options, tcv::Tetrahedra *result) {
+  std::vector<double> orders, rational; // must outlive the call
+  TetcastCellsDesc desc = tetcast_cells_desc_default();
+  desc.vertices = tcv::view_of(points);
+  desc.types = grid->GetCellTypesArray()->GetPointer(0);
+  desc.offsets = tcv::view_of(grid->GetCells()->GetOffsetsArray());
+  desc.connectivity = tcv::view_of(grid->GetCells()->GetConnectivityArray());
+  if (grid->GetFaces() && grid->GetFaceLocations()) {
+    desc.faces = tcv::view_of(grid->GetFaces());
+    desc.face_offsets = tcv::view_of(grid->GetFaceLocations());
   }
+  vtkDataArray *degrees = grid->GetCellData()->GetHigherOrderDegrees();
+  vtkDataArray *weights = grid->GetPointData()->GetRationalWeights();
+  if (degrees && degrees->GetNumberOfComponents() == 3 && degrees->GetNumberOfTuples() == grid->GetNumberOfCells()) {
+    desc.orders = numbers_of(degrees, &orders);
+  }
+  if (weights && weights->GetNumberOfComponents() == 1 && weights->GetNumberOfTuples() == points->GetNumberOfTuples()) {
+    desc.rational = numbers_of(weights, &rational);
+  }
+  desc.hidden = hidden;
+  desc.hidden_bits = ghost_bits;
+  desc.subdivision = options.subdivision;
+  desc.sources = grid->GetCellData()->GetNumberOfArrays() > 0;
+
+  // The library's words shall begin with the file's name: a context of our own catches them.
+  std::string words;
+  TetcastContextDesc own = tetcast_context_desc_default();
+  own.threads = options.threads;
+  own.message = remember;
+  own.message_user = &words;
+  TetcastContext *context = nullptr;
+  if (tetcast_context_create(&own, &context) != TETCAST_OK) throw std::bad_alloc();
+  result->context.reset(context);
+  TetcastCut *cut = nullptr;
+  const TetcastStatus status = tetcast_cells_cut(context, &desc, &cut);
+  if (status == TETCAST_ERROR_MEMORY) throw std::bad_alloc();
+  if (status != TETCAST_OK) tcv::fail(status, "%s: %s", path, words.c_str());
+  result->cut.reset(cut);
+  tetcast_cut_info(cut, &result->info);
+}
+
+// Puts the vertices that were added after the points.
+void add_points(const tcv::Tetrahedra &tetrahedra, vtkDataArray *points) {
+  const int64_t added = tetrahedra.info.added_vertices, count = points->GetNumberOfTuples();
+  if (added == 0) return;
+  std::vector<double> positions(3 * static_cast<size_t>(added));
+  const TetcastArray view = tcv::view_of(points);
+  tetcast_cut_interpolate(tetrahedra.cut.get(), &view, 3, positions.data());
+  if (!points->Resize(count + added)) throw std::bad_alloc();
+  for (int64_t i = 0; i < added; ++i) points->InsertNextTuple(positions.data() + 3 * i);
 }
 
 } // namespace
 
 namespace tcv {
 
-void make_tetrahedra(const char *path, vtkUnstructuredGrid *grid, Tetrahedra *result) {
-  const TypeTable table = survey(path, grid, result);
-  const auto *ghosts = vtkUnsignedCharArray::SafeDownCast(grid->GetCellData()->GetAbstractArray("vtkGhostType"));
+void ContextDeleter::operator()(TetcastContext *context) const { tetcast_context_destroy(&context); }
+void CutDeleter::operator()(TetcastCut *cut) const { tetcast_cut_destroy(&cut); }
+
+void make_tetrahedra(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, const CutOptions &options,
+                     Tetrahedra *result) {
+  survey(path, grid, result);
+  auto *ghosts = vtkUnsignedCharArray::SafeDownCast(grid->GetCellData()->GetAbstractArray("vtkGhostType"));
   if (ghosts && (ghosts->GetNumberOfComponents() != 1 || ghosts->GetNumberOfTuples() != grid->GetNumberOfCells())) {
     ghosts = nullptr;
   }
-  bool any_ghost = false;
-  for (int64_t i = 0; ghosts && i < grid->GetNumberOfCells() && !any_ghost; ++i) any_ghost = is_ghost(ghosts, i);
-
+  const unsigned char *hidden = ghosts ? ghosts->GetPointer(0) : nullptr;
+  const bool any_ghost = hidden && std::any_of(hidden, hidden + grid->GetNumberOfCells(),
+                                               [](unsigned char bits) { return (bits & ghost_bits) != 0; });
   if (result->types.size() == 1 && result->types[0].first == find_type(VTK_TETRA)->name && !any_ghost &&
-      !result->oversized) {
+      grid->GetCells()->GetNumberOfConnectivityIds() == 4 * grid->GetNumberOfCells()) {
     result->connectivity = grid->GetCells()->GetConnectivityArray();
     result->view = view_of(result->connectivity);
     result->view.count = grid->GetNumberOfCells();
     return;
   }
-  cut_all(path, grid, table, ghosts, result);
-  result->view.data = result->cut.data();
-  result->view.type = TETCAST_TYPE_INT32;
-  result->view.count = static_cast<int64_t>(result->cut.size() / 4);
+  cut_all(path, grid, points, hidden, options, result);
+  add_points(*result, points);
+  result->view = tetcast_cut_tetrahedra(result->cut.get());
+  result->source = tetcast_cut_sources(result->cut.get());
   if (result->view.count == 0) fail(TETCAST_ERROR_DATA, "%s: no tetrahedron can be made of its cells", path);
 }
 

@@ -53,10 +53,20 @@ static Contents read_pieces_of(const Reading &reading) {
   return contents;
 }
 
-static void warn_of_cells(const TetcastDataset *dataset, int64_t count, const char *text) {
-  if (count == 0) return;
-  tetcast_context_message(dataset->context, TETCAST_SEVERITY_WARNING, "%s: %lld cells %s", dataset->path.c_str(),
-                          static_cast<long long>(count), text);
+static void warn_of_cut(const TetcastDataset *dataset) {
+  const TetcastCutInfo &info = dataset->tetrahedra.info;
+  const struct {
+    int64_t count;
+    const char *text;
+  } rows[] = {{info.empty, "have no inside and are left out"},
+              {info.oversized, "have more points than their type has: the last ones of each are ignored"},
+              {info.folded, "are far from convex or tangled: their tetrahedra overlap"},
+              {info.open, "are polyhedra whose faces don't close"}};
+  for (const auto &row : rows) {
+    if (row.count == 0) continue;
+    tetcast_context_message(dataset->context, TETCAST_SEVERITY_WARNING, "%s: %lld cells %s", dataset->path.c_str(),
+                            static_cast<long long>(row.count), row.text);
+  }
 }
 
 static void read_dataset(TetcastContext *context, const char *path, const TetcastDatasetDesc &desc, TetcastDataset *dataset) {
@@ -76,10 +86,11 @@ static void read_dataset(TetcastContext *context, const char *path, const Tetcas
   take_points(grid, dataset);
   {
     const Capture capture; // cutting may complain as well
-    make_tetrahedra(path, grid, &dataset->tetrahedra);
+    CutOptions options;
+    options.threads = tetcast_context_threads(context);
+    make_tetrahedra(path, grid, dataset->points, options, &dataset->tetrahedra);
   }
-  warn_of_cells(dataset, dataset->tetrahedra.uncut, "can't be cut into tetrahedra and are left out");
-  warn_of_cells(dataset, dataset->tetrahedra.oversized, "have more points than their type has: the last ones of each are ignored");
+  warn_of_cut(dataset);
   take_arrays(path, grid->GetPointData(), TETCAST_POINT, points, &dataset->arrays);
   take_arrays(path, grid->GetCellData(), TETCAST_CELL, cells, &dataset->arrays);
 }
@@ -137,7 +148,6 @@ bool tetcast_dataset_array(const TetcastDataset *dataset, int i, TetcastDatasetA
 int64_t tetcast_dataset_point_count(const TetcastDataset *dataset) { return dataset ? dataset->point_count : 0; }
 int64_t tetcast_dataset_cell_count(const TetcastDataset *dataset) { return dataset ? dataset->cell_count : 0; }
 
-
 TetcastDatasetPieces tetcast_dataset_pieces(const TetcastDataset *dataset) { return dataset ? dataset->pieces : TetcastDatasetPieces(); }
 
 const char *tetcast_dataset_block(const TetcastDataset *dataset, int i) {
@@ -151,6 +161,10 @@ bool tetcast_dataset_time(const TetcastDataset *dataset, int64_t i, double *time
 }
 
 int64_t tetcast_dataset_step(const TetcastDataset *dataset) { return dataset ? dataset->step : 0; }
+
+TetcastCutInfo tetcast_dataset_cut(const TetcastDataset *dataset) {
+  return dataset ? dataset->tetrahedra.info : TetcastCutInfo();
+}
 
 TetcastStatus tetcast_dataset_mesh(const TetcastDataset *dataset, TetcastMesh **mesh) {
   if (mesh) *mesh = nullptr;

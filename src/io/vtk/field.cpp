@@ -99,13 +99,32 @@ static std::vector<double> computed(const Selection &selection) {
 }
 
 // The value of its cell for each tetrahedron.
-static std::vector<char> gathered(const TetcastArray &values, const std::vector<int32_t> &source) {
+static std::vector<char> gathered(const TetcastArray &values, const TetcastArray &sources) {
   const size_t size = static_cast<size_t>(type_size(values.type));
   const size_t stride = values.stride ? static_cast<size_t>(values.stride) : size;
-  std::vector<char> result(source.size() * size);
-  for (size_t i = 0; i < source.size(); ++i) {
+  const auto *source = static_cast<const int32_t *>(sources.data);
+  std::vector<char> result(static_cast<size_t>(sources.count) * size);
+  for (size_t i = 0; i < static_cast<size_t>(sources.count); ++i) {
     std::memcpy(&result[i * size], static_cast<const char *>(values.data) + static_cast<size_t>(source[i]) * stride,
                 size);
+  }
+  return result;
+}
+
+// The values of all vertices, those that cutting added last: float stays float, anything else becomes double.
+static std::vector<char> extended(const TetcastArray &values, const Tetrahedra &tetrahedra) {
+  const size_t count = static_cast<size_t>(values.count), added = static_cast<size_t>(tetrahedra.info.added_vertices);
+  const size_t size = static_cast<size_t>(type_size(values.type)), stride = static_cast<size_t>(values.stride);
+  std::vector<double> more(added);
+  tetcast_cut_interpolate(tetrahedra.cut.get(), &values, 1, more.data());
+  std::vector<char> result((count + added) * size);
+  for (size_t i = 0; i < count; ++i) {
+    std::memcpy(&result[i * size], static_cast<const char *>(values.data) + i * stride, size);
+  }
+  for (size_t i = 0; i < added; ++i) {
+    const float single = static_cast<float>(more[i]);
+    const void *value = values.type == TETCAST_TYPE_FLOAT32 ? static_cast<const void *>(&single) : &more[i];
+    std::memcpy(&result[(count + i) * size], value, size);
   }
   return result;
 }
@@ -116,7 +135,10 @@ static TetcastStatus make_field(const TetcastDataset *dataset, const Selection &
   desc.ownership = TETCAST_BORROW;
   vtkDataArray *data = selection.array->data;
   std::vector<double> values;
-  if (type_of(data) != TETCAST_TYPE_NONE && selection.component != MAGNITUDE) {
+  const bool extend = desc.association == TETCAST_POINT && dataset->tetrahedra.info.added_vertices > 0;
+  const TetcastType type = type_of(data);
+  const bool real = type == TETCAST_TYPE_FLOAT32 || type == TETCAST_TYPE_FLOAT64;
+  if (type != TETCAST_TYPE_NONE && selection.component != MAGNITUDE && (real || !extend)) {
     desc.values = view_of(data);
     const int64_t size = type_size(desc.values.type);
     desc.values.stride = size * data->GetNumberOfComponents();
@@ -125,14 +147,15 @@ static TetcastStatus make_field(const TetcastDataset *dataset, const Selection &
     values = computed(selection);
     desc.values.data = values.data();
     desc.values.type = TETCAST_TYPE_FLOAT64;
+    desc.values.stride = sizeof(double);
     desc.values.count = static_cast<int64_t>(values.size());
     desc.ownership = TETCAST_COPY;
   }
-  std::vector<char> of_tetrahedra;
-  if (desc.association == TETCAST_CELL && dataset->tetrahedra.connectivity == nullptr) {
-    of_tetrahedra = gathered(desc.values, dataset->tetrahedra.source);
-    desc.values.data = of_tetrahedra.data();
-    desc.values.count = dataset->tetrahedra.view.count;
+  std::vector<char> made;
+  if (extend || (desc.association == TETCAST_CELL && dataset->tetrahedra.connectivity == nullptr)) {
+    made = extend ? extended(desc.values, dataset->tetrahedra) : gathered(desc.values, dataset->tetrahedra.source);
+    desc.values.data = made.data();
+    desc.values.count = extend ? desc.values.count + dataset->tetrahedra.info.added_vertices : dataset->tetrahedra.view.count;
     desc.values.stride = 0;
     desc.ownership = TETCAST_COPY;
   }
