@@ -130,8 +130,8 @@ typedef struct Caster {
   TetcastTransferFunction *gray;
   TcWorker worker;
   int64_t rays;
-  TcLine queue[TC_PACKET]; /* rays that go through the packet kernels together */
-  double queue_length[TC_PACKET];
+  TcLine queue[TC_PACKETS * TC_PACKET]; /* rays that go through the packet kernels together */
+  double queue_length[TC_PACKETS * TC_PACKET];
   int queued;
 } Caster;
 
@@ -147,7 +147,7 @@ static void caster_begin(Caster *caster, const Soup *soup) {
   }
   tetcast_field_destroy(&field);
   caster->gray = gray_of(caster->fixture.context, 1e-9); /* thin: nothing ends early, the depth is the length */
-  for (int i = 0; i < TC_PACKET; ++i) caster->worker.spans[i].context = caster->fixture.context;
+  for (int i = 0; i < TC_PACKETS * TC_PACKET; ++i) caster->worker.spans[i].context = caster->fixture.context;
   caster->worker.tolerance = tc_tolerance_begin(&caster->gray->pieces, 0);
 }
 
@@ -167,7 +167,7 @@ static void flush(Caster *caster) {
   const double *size = caster->soup->size, scale = fmax(size[0], fmax(size[1], size[2]));
   for (size_t i = 0; i < sizeof kernels / sizeof *kernels; ++i) {
     if (!tc_cpu_has(kernels[i].isa)) continue;
-    TcLight light[TC_PACKET];
+    TcLight light[TC_PACKETS * TC_PACKET];
     caster->worker.lost = 0;
     assert_true(kernels[i].cast(&volume->shell, &caster->gray->pieces, caster->queue, caster->queued, &caster->worker, light));
     assert_int_equal(caster->worker.lost, 0);
@@ -185,7 +185,7 @@ static void flush(Caster *caster) {
 
 static void caster_end(Caster *caster) {
   flush(caster);
-  for (int i = 0; i < TC_PACKET; ++i) tc_spans_clear(&caster->worker.spans[i]);
+  for (int i = 0; i < TC_PACKETS * TC_PACKET; ++i) tc_spans_clear(&caster->worker.spans[i]);
   tetcast_transfer_function_destroy(&caster->gray);
   for (int i = 0; i < 2; ++i) tetcast_volume_destroy(&caster->volume[i]);
   tetcast_mesh_destroy(&caster->mesh);
@@ -209,7 +209,7 @@ static double length_of(Caster *caster, int traversal, const double eye[3], cons
   if (traversal == 0) {
     caster->queue_length[caster->queued] = length;
     caster->queue[caster->queued++] = line;
-    if (caster->queued == TC_PACKET) flush(caster);
+    if (caster->queued == TC_PACKETS * TC_PACKET) flush(caster);
   }
   return length;
 }
