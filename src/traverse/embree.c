@@ -19,6 +19,10 @@
  * Embree's slab test, with RTC_SCENE_FLAG_ROBUST, a few 2^−24 of lengths ≤ 8. */
 #define MARGIN 0x1p-18
 
+/* What the caller counts goes to Embree in pairs: neighbours in number are neighbours in space. It halves the time and the memory that
+ * building takes; queries find somewhat more that is not met, 2 to 4 % of a frame. */
+enum { PAIR = 2 };
+
 struct TcEmbree {
   TetcastContext *context;
   RTCDevice device;
@@ -26,6 +30,7 @@ struct TcEmbree {
   double center[3], inverse_radius;
   TcBoundsFunction *bounds;
   const void *user;
+  uint32_t count;
   atomic_llong bytes;
 };
 
@@ -46,10 +51,23 @@ const char *tetcast_embree_version_string(void) {
   return STRING(RTC_VERSION_MAJOR) "." STRING(RTC_VERSION_MINOR) "." STRING(RTC_VERSION_PATCH);
 }
 
+/* The end of the caller's primitives that Embree's `pair` stands for; they begin at PAIR · pair. */
+static uint32_t end_of(const TcEmbree *embree, uint32_t pair) {
+  const uint32_t begin = PAIR * pair;
+  return embree->count - begin < PAIR ? embree->count : begin + PAIR;
+}
+
 static void bounds_function(const struct RTCBoundsFunctionArguments *arguments) {
   const TcEmbree *embree = arguments->geometryUserPtr;
-  double low[3], high[3];
-  embree->bounds(embree->user, arguments->primID, low, high);
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (uint32_t i = PAIR * arguments->primID; i < end_of(embree, arguments->primID); ++i) {
+    double l[3], h[3];
+    embree->bounds(embree->user, i, l, h);
+    for (int k = 0; k < 3; ++k) {
+      low[k] = l[k] < low[k] ? l[k] : low[k];
+      high[k] = h[k] > high[k] ? h[k] : high[k];
+    }
+  }
   float lower[3], upper[3];
   for (int k = 0; k < 3; ++k) {
     lower[k] = (float)((low[k] - embree->center[k]) * embree->inverse_radius - MARGIN);
@@ -63,8 +81,9 @@ static void bounds_function(const struct RTCBoundsFunctionArguments *arguments) 
 /* Hands the candidate on and never accepts a hit, so that Embree goes on to the next. */
 static void intersect_function(const struct RTCIntersectFunctionNArguments *arguments) {
   const Query *query = (const Query *)(const void *)arguments->context;
+  const uint32_t begin = PAIR * arguments->primID, end = end_of(arguments->geometryUserPtr, arguments->primID);
   if (query->candidate) {
-    if (arguments->valid[0]) query->candidate(query->query, arguments->primID);
+    for (uint32_t i = begin; i < end && arguments->valid[0]; ++i) query->candidate(query->query, i);
     return;
   }
   /* A ray's id is its lane, however many of a packet Embree hands on together. It is the eleventh of a packet's arrays: what
@@ -74,7 +93,7 @@ static void intersect_function(const struct RTCIntersectFunctionNArguments *argu
   for (unsigned i = 0; i < arguments->N; ++i) {
     if (arguments->valid[i]) lanes |= 1U << id[i];
   }
-  query->packet_candidate(query->query, arguments->primID, lanes);
+  for (uint32_t i = begin; i < end; ++i) query->packet_candidate(query->query, i, lanes);
 }
 
 static bool memory_monitor(void *user, ssize_t bytes, bool post) {
@@ -101,6 +120,7 @@ TetcastStatus tc_embree_create(TetcastContext *context, int64_t count, const dou
   embree->inverse_radius = 1 / radius;
   embree->bounds = bounds;
   embree->user = user;
+  embree->count = (uint32_t)count;
   atomic_init(&embree->bytes, 0);
   char config[64];
   snprintf(config, sizeof config, "threads=%d,set_affinity=0", tc_context_threads(context));
@@ -115,7 +135,7 @@ TetcastStatus tc_embree_create(TetcastContext *context, int64_t count, const dou
   embree->scene = rtcNewScene(embree->device);
   rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
   RTCGeometry geometry = rtcNewGeometry(embree->device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)count);
+  rtcSetGeometryUserPrimitiveCount(geometry, (embree->count + PAIR - 1) / PAIR);
   rtcSetGeometryUserData(geometry, embree);
   rtcSetGeometryBoundsFunction(geometry, bounds_function, NULL);
   rtcSetGeometryIntersectFunction(geometry, intersect_function);

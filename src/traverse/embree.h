@@ -10,7 +10,7 @@ typedef struct TcEmbree TcEmbree;
 
 /* Bounds of primitive i, scaled coordinates. */
 typedef void TcBoundsFunction(const void *user, uint32_t i, double low[3], double high[3]);
-/* Called for every primitive whose box the line may meet, in any order, each once. */
+/* Called for every primitive whose box the line may meet, and for some others, in any order, each once. */
 typedef void TcCandidateFunction(void *query, uint32_t i);
 
 /* Builds the hierarchy over `count` primitives inside the sphere (center, radius). `user` must outlive it. */

@@ -329,7 +329,7 @@ static void memory_is_bounded(void **state) {
     const long long before = meter.live;
     meter.peak = before;
     TetcastVolume *volume = volume_of(context, mesh, TETCAST_TRAVERSAL_SHELL);
-    assert_true(meter.peak - before <= 80 * cube.cell_count);
+    assert_true(meter.peak - before <= 64 * cube.cell_count);
     assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
     TetcastVolumeInfo info;
     tetcast_volume_info(volume, &info);
