@@ -9,12 +9,14 @@ fi
 for file in "$TETCAST_DATA"/volumes/*.vtu "$TETCAST_DATA"/volumes/*.ex2; do
   name=$(basename "$file")
   name=${name%.*}
-  accept render "$file" --size 200x150
+  accepts=accept
+  [ "$name" != can ] || accepts="warn tangled" # some of its cells overlap
+  $accepts render "$file" --size 200x150
   exists "$name.png"
   [ "$(stat -c %s "$name.png")" -gt 2000 ] || fail "$name: the picture is nearly empty"
-  accept render "$file" --size 200x150 --pixel-type double -o one.tif --threads 1
-  accept render "$file" --size 200x150 --pixel-type double -o two.tif --threads 2
+  $accepts render "$file" --size 200x150 --pixel-type double -o one.tif --threads 1
+  $accepts render "$file" --size 200x150 --pixel-type double -o two.tif --threads 2
   same one.tif two.tif "$name"
-  accept info "$file"
+  $accepts info "$file"
 done
 finish
