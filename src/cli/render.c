@@ -108,12 +108,8 @@ static int begin_image(Run *run) {
   if (!cli_vtk()) /* before the thread begins: only one library is loaded at a time */
     return CLI_FAILED;
 #ifdef __SANITIZE_ADDRESS__ /* its allocator can't be used after a fork beside threads, and the image library's own stay */
-  const bool alone = true;
-#else
-  const bool alone = false;
+  return check_image(run);
 #endif
-  if (alone)
-    return check_image(run);
   running = run;
   if (pthread_atfork(before_fork, NULL, NULL) != 0)
     return check_image(run);

@@ -30,38 +30,58 @@ TC_INLINE void tc_lights_end_block(TcLights *lights) {
   lights->block_transmittance = tc_set(1);
 }
 
-/* Lanes not in `mask` have length 0 and finite scalars: nothing happens in them. */
-TC_INLINE void tc_lights_add_part(TcLights *lights, const TcPiece *piece, double thin, TcMask mask, TcVec length, TcVec s0, TcVec s1) {
-  TcVec low, high, depth; /* weights of the piece's colours at its two ends */
-  TcSegments segments;
-  if (piece->constant) {
-    depth = piece->at_low.extinction * length;
-    segments = tc_segments_constant(mask, depth);
-    low = lights->block_transmittance * segments.w0;
-    high = tc_set(0);
-  } else {
-    const TcVec near_high = (s0 - piece->low) * piece->inverse, near_low = (piece->high - s0) * piece->inverse;
-    const TcVec far_high = (s1 - piece->low) * piece->inverse, far_low = (piece->high - s1) * piece->inverse;
-    const double k0 = piece->at_low.extinction, k1 = piece->at_high.extinction;
-    const TcVec a = tc_madd(near_high, tc_set(k1), near_low * k0) * length, a1 = tc_madd(far_high, tc_set(k1), far_low * k0) * length;
-    depth = 0.5 * a + 0.5 * a1;
-    segments = tc_segments(mask, a, a1, depth, thin);
-    const TcVec w0 = lights->block_transmittance * segments.w0, w1 = lights->block_transmittance * segments.w1;
-    low = tc_madd(near_low, w0, far_low * w1);
-    high = tc_madd(near_high, w0, far_high * w1);
-  }
-  for (int k = 0; k < 3; ++k) {
-    lights->block_color[k] = tc_madd(low, tc_set(piece->at_low.color[k]), lights->block_color[k]);
-    lights->block_color[k] = tc_madd(high, tc_set(piece->at_high.color[k]), lights->block_color[k]);
-  }
-  lights->block_transmittance *= segments.transmittance;
-  lights->block_depth += depth;
-}
-
 /* A lane's piece each, as it lies in TcPiece. */
 typedef struct TcLanePieces {
   TcVec low, high, k0, color0[3], k1, color1[3], inverse, rest;
 } TcLanePieces;
+
+/* Segments with these weights of the pieces' colours at their two ends. */
+TC_INLINE void tc_lights_composite(TcLights *lights, const TcLanePieces *piece, TcVec low, TcVec high, TcVec depth, TcVec transmittance) {
+  for (int k = 0; k < 3; ++k) {
+    lights->block_color[k] = tc_madd(high, piece->color1[k], tc_madd(low, piece->color0[k], lights->block_color[k]));
+  }
+  lights->block_transmittance *= transmittance;
+  lights->block_depth += depth;
+}
+
+/* Parts of a segment, a lane each; of length 0 in lanes not in `here`. `any_constant`, a constant wherever this is used: whether pieces may be
+ * constant. */
+TC_INLINE void tc_lights_add_parts(TcLights *lights, const TcLanePieces *piece, const bool any_constant, double thin, TcMask here,
+                                   TcVec length, TcVec s0, TcVec s1) {
+  TcVec near_high = (s0 - piece->low) * piece->inverse, near_low = (piece->high - s0) * piece->inverse;
+  TcVec far_high = (s1 - piece->low) * piece->inverse, far_low = (piece->high - s1) * piece->inverse;
+  if (any_constant) {
+    const TcVec zero = tc_set(0), one = tc_set(1);
+    const TcMask constant = tc_eq(piece->inverse, zero);
+    near_high = tc_select(constant, zero, near_high);
+    near_low = tc_select(constant, one, near_low);
+    far_high = tc_select(constant, zero, far_high);
+    far_low = tc_select(constant, one, far_low);
+  }
+  const TcVec a = tc_madd(near_high, piece->k1, near_low * piece->k0) * length, a1 = tc_madd(far_high, piece->k1, far_low * piece->k0) * length;
+  const TcVec depth = 0.5 * a + 0.5 * a1;
+  const TcSegments segments = tc_segments(here, a, a1, depth, thin);
+  const TcVec w0 = lights->block_transmittance * segments.w0, w1 = lights->block_transmittance * segments.w1;
+  tc_lights_composite(lights, piece, tc_madd(near_low, w0, far_low * w1), tc_madd(near_high, w0, far_high * w1), depth,
+                      segments.transmittance);
+}
+
+/* All in one piece. Lanes not in `mask` have length 0 and finite scalars: nothing happens in them. */
+TC_INLINE void tc_lights_add_part(TcLights *lights, const TcPiece *piece, double thin, TcMask mask, TcVec length, TcVec s0, TcVec s1) {
+  TcLanePieces all = {.low = tc_set(piece->low), .high = tc_set(piece->high), .inverse = tc_set(piece->inverse),
+                      .k0 = tc_set(piece->at_low.extinction), .k1 = tc_set(piece->at_high.extinction)};
+  for (int k = 0; k < 3; ++k) {
+    all.color0[k] = tc_set(piece->at_low.color[k]);
+    all.color1[k] = tc_set(piece->at_high.color[k]);
+  }
+  if (!piece->constant) {
+    tc_lights_add_parts(lights, &all, false, thin, mask, length, s0, s1);
+    return;
+  }
+  const TcVec depth = all.k0 * length;
+  const TcSegments segments = tc_segments_constant(mask, depth);
+  tc_lights_composite(lights, &all, lights->block_transmittance * segments.w0, tc_set(0), depth, segments.transmittance);
+}
 
 TC_INLINE TcLanePieces tc_load_pieces(const TcPieces *pieces, TcVec at) {
   enum { STRIDE = sizeof(TcPiece) / sizeof(double), WORDS = sizeof(TcLanePieces) / sizeof(TcVec) };
@@ -94,26 +114,6 @@ TC_INLINE int64_t tc_find_pieces(const TcPieces *pieces, int64_t from, TcMask ma
   return at;
 }
 
-/* Parts of a segment, a lane each; of length 0 in lanes not in `here`. */
-TC_INLINE void tc_lights_add_parts(TcLights *lights, const TcLanePieces *piece, double thin, TcMask here, TcVec length, TcVec s0, TcVec s1) {
-  const TcVec zero = tc_set(0), one = tc_set(1);
-  const TcMask constant = tc_eq(piece->inverse, zero);
-  const TcVec near_high = tc_select(constant, zero, (s0 - piece->low) * piece->inverse);
-  const TcVec near_low = tc_select(constant, one, (piece->high - s0) * piece->inverse);
-  const TcVec far_high = tc_select(constant, zero, (s1 - piece->low) * piece->inverse);
-  const TcVec far_low = tc_select(constant, one, (piece->high - s1) * piece->inverse);
-  const TcVec a = tc_madd(near_high, piece->k1, near_low * piece->k0) * length, a1 = tc_madd(far_high, piece->k1, far_low * piece->k0) * length;
-  const TcVec depth = 0.5 * a + 0.5 * a1;
-  const TcSegments segments = tc_segments(here, a, a1, depth, thin);
-  const TcVec w0 = lights->block_transmittance * segments.w0, w1 = lights->block_transmittance * segments.w1;
-  const TcVec low = tc_madd(near_low, w0, far_low * w1), high = tc_madd(near_high, w0, far_high * w1);
-  for (int k = 0; k < 3; ++k) {
-    lights->block_color[k] = tc_madd(high, piece->color1[k], tc_madd(low, piece->color0[k], lights->block_color[k]));
-  }
-  lights->block_transmittance *= segments.transmittance;
-  lights->block_depth += depth;
-}
-
 /* Segments that lie in several pieces: lanes pass from piece to piece, each where it is, from the first to the last that has any extinction.
  * Where a segment begins or ends on a knot, the piece above may come in with a part of length 0. */
 static __attribute__((noinline)) void tc_lights_split(TcLights *lights, const TcPieces *pieces, double thin, TcMask mask,
@@ -132,7 +132,7 @@ static __attribute__((noinline)) void tc_lights_split(TcLights *lights, const Tc
     const TcLanePieces piece = tc_load_pieces(pieces, at);
     const TcVec near = tc_max(tc_min(s0, piece.high), piece.low), far = tc_max(tc_min(s1, piece.high), piece.low);
     const TcVec part = length * tc_select(tc_eq(whole, zero), one, tc_abs(far - near) / whole);
-    tc_lights_add_parts(lights, &piece, thin, pending, tc_select(pending, part, zero), near, far);
+    tc_lights_add_parts(lights, &piece, true, thin, pending, tc_select(pending, part, zero), near, far);
     pending = tc_and_not(pending, tc_eq(at, end));
     at += step;
   }

@@ -67,8 +67,8 @@ static inline double tc_product_error(double a, double b, double p) {
 
 double tc_edge_tie(const TcPoint *a, const TcPoint *b);
 
-/* a × b to a relative error of 2^−51 (of 1/2 where it is less than 2^−104 of its products), never zero, with the exact sign for the points given; where it is exactly zero, the sign for
- * points moved by an infinitesimal amount (tc_edge_tie). tc_edge(a, b) = −tc_edge(b, a).
+/* a × b to a relative error of 2^−51 (of 1/2 where it is less than 2^−104 of its products), never zero, with the exact sign for the points
+ * given; where it is exactly zero, the sign for points moved by an infinitesimal amount (tc_edge_tie). tc_edge(a, b) = −tc_edge(b, a).
  *
  * The errors of the two products are added to their difference e. If the products are within a factor of two, e is exact (Sterbenz), as
  * is the sum of the errors but for its last bit; else e is at least half of the larger product and the errors are below its last bits.

@@ -10,7 +10,6 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
-#include <vtkDataSetAttributes.h>
 #include <vtkIdTypeArray.h>
 #include <vtkPointData.h>
 #include <vtkUnsignedCharArray.h>
@@ -147,10 +146,6 @@ void survey(const char *path, vtkUnstructuredGrid *grid, tcv::Tetrahedra *result
   }
 }
 
-// Copies that another piece of a distributed mesh has as well, and cells that are switched off.
-const int ghost_bits =
-    vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::REFINEDCELL | vtkDataSetAttributes::HIDDENCELL;
-
 // A view of numbers of any type; copied to `storage` if they are of one that TetcastType lacks. None is a view of nothing.
 TetcastArray numbers_of(vtkDataArray *array, std::vector<double> *storage) {
   if (!array) return {};
@@ -169,8 +164,8 @@ TetcastArray numbers_of(vtkDataArray *array, std::vector<double> *storage) {
 
 void remember(void *user, TetcastSeverity, const char *text) { *static_cast<std::string *>(user) = text; }
 
-void cut_all(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, const unsigned char *hidden,
-             const tcv::CutOptions &options, tcv::Tetrahedra *result) {
+void cut_all(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, const tcv::CutOptions &options,
+             tcv::Tetrahedra *result) {
   std::vector<double> orders, rational; // must outlive the call
   TetcastCellsDesc desc = tetcast_cells_desc_default();
   desc.vertices = tcv::view_of(points);
@@ -189,8 +184,6 @@ void cut_all(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, 
   if (weights && weights->GetNumberOfComponents() == 1 && weights->GetNumberOfTuples() == points->GetNumberOfTuples()) {
     desc.rational = numbers_of(weights, &rational);
   }
-  desc.hidden = hidden;
-  desc.hidden_bits = ghost_bits;
   desc.subdivision = options.subdivision;
   desc.sources = grid->GetCellData()->GetNumberOfArrays() > 0;
 
@@ -232,21 +225,14 @@ void CutDeleter::operator()(TetcastCut *cut) const { tetcast_cut_destroy(&cut); 
 void make_tetrahedra(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, const CutOptions &options,
                      Tetrahedra *result) {
   survey(path, grid, result);
-  auto *ghosts = vtkUnsignedCharArray::SafeDownCast(grid->GetCellData()->GetAbstractArray("vtkGhostType"));
-  if (ghosts && (ghosts->GetNumberOfComponents() != 1 || ghosts->GetNumberOfTuples() != grid->GetNumberOfCells())) {
-    ghosts = nullptr;
-  }
-  const unsigned char *hidden = ghosts ? ghosts->GetPointer(0) : nullptr;
-  const bool any_ghost = hidden && std::any_of(hidden, hidden + grid->GetNumberOfCells(),
-                                               [](unsigned char bits) { return (bits & ghost_bits) != 0; });
-  if (result->types.size() == 1 && result->types[0].first == find_type(VTK_TETRA)->name && !any_ghost &&
+  if (result->types.size() == 1 && result->types[0].first == find_type(VTK_TETRA)->name &&
       grid->GetCells()->GetNumberOfConnectivityIds() == 4 * grid->GetNumberOfCells()) {
     result->connectivity = grid->GetCells()->GetConnectivityArray();
     result->view = view_of(result->connectivity);
     result->view.count = grid->GetNumberOfCells();
     return;
   }
-  cut_all(path, grid, points, hidden, options, result);
+  cut_all(path, grid, points, options, result);
   add_points(*result, points);
   result->view = tetcast_cut_tetrahedra(result->cut.get());
   result->source = tetcast_cut_sources(result->cut.get());
