@@ -66,14 +66,19 @@ TC_INLINE void tc_lights_add_parts(TcLights *lights, const TcLanePieces *piece, 
                       segments.transmittance);
 }
 
-/* All in one piece. Lanes not in `mask` have length 0 and finite scalars: nothing happens in them. */
-TC_INLINE void tc_lights_add_part(TcLights *lights, const TcPiece *piece, double thin, TcMask mask, TcVec length, TcVec s0, TcVec s1) {
+TC_INLINE TcLanePieces tc_set_pieces(const TcPiece *piece) {
   TcLanePieces all = {.low = tc_set(piece->low), .high = tc_set(piece->high), .inverse = tc_set(piece->inverse),
                       .k0 = tc_set(piece->at_low.extinction), .k1 = tc_set(piece->at_high.extinction)};
   for (int k = 0; k < 3; ++k) {
     all.color0[k] = tc_set(piece->at_low.color[k]);
     all.color1[k] = tc_set(piece->at_high.color[k]);
   }
+  return all;
+}
+
+/* All in one piece. Lanes not in `mask` have length 0 and finite scalars: nothing happens in them. */
+TC_INLINE void tc_lights_add_part(TcLights *lights, const TcPiece *piece, double thin, TcMask mask, TcVec length, TcVec s0, TcVec s1) {
+  const TcLanePieces all = tc_set_pieces(piece);
   if (!piece->constant) {
     tc_lights_add_parts(lights, &all, false, thin, mask, length, s0, s1);
     return;
@@ -152,6 +157,30 @@ TC_INLINE void tc_lights_add(TcLights *lights, const TcPieces *pieces, double th
   }
   const TcVec arguments[3] = {length, s0, s1};
   tc_lights_split(lights, pieces, thin, mask, &arguments[0], &arguments[1], &arguments[2]);
+}
+
+/* tc_light_add_constant() in the lanes of `mask`. */
+TC_INLINE void tc_lights_add_constant(TcLights *lights, const TcPieces *pieces, TcMask mask, TcVec length, TcVec s) {
+  const TcVec zero = tc_set(0), one = tc_set(1);
+  const TcPiece *same = &pieces->pieces[lights->piece];
+  const TcMask here = tc_and(mask, tc_and(tc_le(tc_set(same->low), s), tc_lt(s, tc_set(same->high))));
+  TcLanePieces piece;
+  if (tc_bits(here) == tc_bits(mask)) {
+    if (same->at_low.extinction == 0 && same->at_high.extinction == 0) return;
+    piece = tc_set_pieces(same);
+  } else {
+    TcVec first, last;
+    lights->piece = tc_find_pieces(pieces, lights->piece, mask, s, s, s[__builtin_ctz(tc_bits(mask))], &first, &last);
+    mask = tc_and(mask, tc_le(first, last));
+    if (!tc_any(mask)) return;
+    piece = tc_load_pieces(pieces, tc_select(mask, first, zero));
+  }
+  const TcMask inside = tc_and_not(mask, tc_eq(piece.inverse, zero)); /* lanes in pieces that are not constant */
+  const TcVec high = tc_select(inside, (s - piece.low) * piece.inverse, zero), low = tc_select(inside, (piece.high - s) * piece.inverse, one);
+  const TcVec depth = tc_madd(high, piece.k1, low * piece.k0) * tc_select(mask, length, zero);
+  const TcSegments segments = tc_segments_constant(mask, depth);
+  const TcVec weight = lights->block_transmittance * segments.w0;
+  tc_lights_composite(lights, &piece, low * weight, high * weight, depth, segments.transmittance);
 }
 
 /* tc_light_opaque(): the lanes that are complete. */

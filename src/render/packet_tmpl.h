@@ -67,21 +67,16 @@ TC_INLINE unsigned at_shell(const TcShell *shell, TcMask active, TcWord cell) {
 TC_INLINE void add_light(const TetcastVolume *volume, const bool cells, const TcPieces *pieces, TcMask moved, TcVec z, TcVec s, TcWord cell,
                          Packet *packet, TcWorker *worker) {
   const TcWalks *walks = &packet->walks;
-  const double thin = worker->tolerance.thin;
   const TcVec from = packet->seen;
   moved = tc_and(moved, tc_gt(walks->z, from));
   worker->segments += __builtin_popcount(tc_bits(moved));
   packet->seen = tc_select(moved, walks->z, from);
   if (cells) {
-    double value[TC_LANES] = {0};
-    for (unsigned lanes = tc_bits(moved); lanes; lanes &= lanes - 1) {
-      const int i = __builtin_ctz(lanes);
-      value[i] = volume->cell_values[cell[i]];
-    }
-    TcVec values;
-    memcpy(&values, value, sizeof values);
-    moved = tc_and(moved, tc_eq(values, values)); /* NaN is transparent */
-    tc_lights_add(&packet->lights, pieces, thin, moved, walks->z - from, values, values);
+    const TcWord zero = {0}, index = tc_select_word(moved, cell, zero);
+    TcVec value;
+    for (int i = 0; i < TC_LANES; ++i) value[i] = volume->cell_values[index[i]];
+    moved = tc_and(moved, tc_eq(value, value)); /* NaN is transparent */
+    tc_lights_add_constant(&packet->lights, pieces, moved, walks->z - from, value);
   } else {
     TcVec s0 = s;
     const TcMask behind = tc_and(moved, tc_lt(z, from));
@@ -90,7 +85,7 @@ TC_INLINE void add_light(const TetcastVolume *volume, const bool cells, const Tc
       s0 = tc_select(behind, (1 - w) * s + w * walks->s, s);
     }
     moved = tc_and(moved, tc_and(tc_eq(s0, s0), tc_eq(walks->s, walks->s)));
-    tc_lights_add(&packet->lights, pieces, thin, moved, walks->z - from, s0, walks->s);
+    tc_lights_add(&packet->lights, pieces, worker->tolerance.thin, moved, walks->z - from, s0, walks->s);
   }
 }
 
@@ -117,10 +112,10 @@ static bool packet_begin(const TcShell *shell, const TcRays *placed, const TcVec
 static bool packet_runs(const Packet *packet) { return packet->starting || packet->active; }
 
 /* The lanes of `starting` set out. */
-static void set_out(const TcShell *shell, const bool wide, Packet *packet) {
+static void set_out(const TcShell *shell, const bool wide, const bool cells, Packet *packet) {
   TcWalks *walks = &packet->walks;
   const TcMask mask = tc_mask_of(packet->starting);
-  tc_walks_begin(shell, wide, &packet->rays, mask, packet->face, walks);
+  tc_walks_begin(shell, wide, cells, &packet->rays, mask, packet->face, walks);
   packet->seen = tc_select(mask, tc_max(walks->z, packet->rays.near), packet->seen);
   packet->active |= packet->starting;
   packet->starting = packet->again = 0;
@@ -149,7 +144,7 @@ TC_INLINE void advance(const TcShell *shell, const bool wide, const bool cells, 
   TcMask active[TC_PACKETS];
   bool halt = false;
   TC_EACH_PACKET {
-    if (packet[i].starting) set_out(shell, wide, &packet[i]);
+    if (packet[i].starting) set_out(shell, wide, cells, &packet[i]);
     active[i] = tc_mask_of(packet[i].active & ~packet[i].ended);
   }
   while (!halt) {
@@ -163,7 +158,7 @@ TC_INLINE void advance(const TcShell *shell, const bool wide, const bool cells, 
       tc_step_cells(shell->volume, active[i], &packet[i].walks, &step[i]);
     }
     TC_EACH_PACKET tc_step_vertices(shell->volume, wide, &packet[i].rays, &step[i]);
-    TC_EACH_PACKET lost[i] = tc_step_out(active[i], &step[i], &packet[i].walks);
+    TC_EACH_PACKET lost[i] = tc_step_out(cells, active[i], &step[i], &packet[i].walks);
     TC_EACH_PACKET add_light(shell->volume, cells, pieces, tc_and_not(active[i], lost[i]), z[i], s[i], packet[i].from, &packet[i], worker);
     TC_EACH_PACKET {
       if (++packet[i].steps % 64 == 0) tc_lights_end_block(&packet[i].lights);
