@@ -15,11 +15,18 @@
 static struct {
   bool quiet;
   const char *place;
-  bool failed; /* an error has been shown; guarded by the lock of stderr */
+  bool failed; /* an error has been shown; guarded by the lock of stderr, as is the list */
+  bool once;
+  char **warnings; /* that were shown, without their digits */
+  int count, capacity;
 } messages;
 
 void cli_set_quiet(bool quiet) {
   messages.quiet = quiet;
+}
+
+void cli_warn_once(void) {
+  messages.once = true;
 }
 
 bool cli_quiet(void) {
@@ -57,12 +64,39 @@ void cli_messages_hold(bool hold) {
     funlockfile(stderr);
 }
 
+/* Whether a warning of these words has been shown. */
+static bool is_repeated(const char *text) {
+  char *words = cli_duplicate(text), *end = words;
+  for (const char *c = text; *c; c++)
+    if (!isdigit((unsigned char)*c))
+      *end++ = *c;
+  *end = '\0';
+  for (int i = 0; i < messages.count; i++) {
+    if (!strcmp(messages.warnings[i], words)) {
+      free(words);
+      return true;
+    }
+  }
+  messages.warnings = cli_grow(messages.warnings, messages.count, &messages.capacity, sizeof *messages.warnings);
+  messages.warnings[messages.count++] = words;
+  return false;
+}
+
+static void show_warning(const char *text) {
+  if (messages.quiet)
+    return;
+  flockfile(stderr);
+  if (!messages.once || !is_repeated(text))
+    show("warning", NULL, text);
+  funlockfile(stderr);
+}
+
 static void receive(void *user, TetcastSeverity severity, const char *text) {
   (void)user;
   if (severity == TETCAST_SEVERITY_ERROR)
     show_error(messages.place, text);
-  else if (severity == TETCAST_SEVERITY_WARNING && !messages.quiet)
-    show("warning", NULL, text);
+  else if (severity == TETCAST_SEVERITY_WARNING)
+    show_warning(text);
 }
 
 static char *print_list(const char *format, va_list list) {
@@ -92,13 +126,11 @@ void cli_error(const char *format, ...) {
 }
 
 void cli_warning(const char *format, ...) {
-  if (messages.quiet)
-    return;
   va_list list;
   va_start(list, format);
   char *text = print_list(format, list);
   va_end(list);
-  show("warning", NULL, text);
+  show_warning(text);
   free(text);
 }
 

@@ -22,6 +22,9 @@ int tetcast_cli_mesh(int argc, char **argv);
 void cli_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void cli_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void cli_set_quiet(bool quiet);
+
+/* Of warnings that differ in nothing but numbers only the first is shown from here on: for work that does the same many times. */
+void cli_warn_once(void);
 bool cli_quiet(void);
 
 /* While a thread holds them, the others wait with their messages. */

@@ -93,6 +93,8 @@ static int perform(Converge *converge, Folder *folder) {
     code = stage_read(&converge->stage, &converge->options);
     if (code == CLI_DONE)
       code = stage_prepare(&converge->stage, &converge->options);
+    if (code == CLI_DONE)
+      code = stage_shade(&converge->stage, &converge->options, converge->stage.info.field_range);
   }
   cli_interrupt_hold(true);
   if (code == CLI_DONE)

@@ -16,6 +16,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <vtkSMPTools.h>
+
 #include "common.hpp"
 #include "files.hpp"
 #include "formats.hpp"
@@ -82,6 +84,7 @@ static void stop_if_endless(int) {
   const itimerval interval = {{0, 250000}, {0, 250000}};
   setitimer(ITIMER_REAL, &interval, nullptr);
   limit_memory();
+  vtkSMPTools::SetBackend("Sequential"); // threads that the host has started for TBB are not in this process
   try {
     PluginResult result;
     read(&request, &result);
