@@ -38,14 +38,14 @@ TETCAST_API TetcastDatasetDesc tetcast_dataset_desc_default(void);
 TETCAST_API bool tetcast_dataset_format(int i, const char **name, const char **extensions);
 
 /* Reads a file in one of these formats; which one is told by content, then by extension. desc NULL: the default. TETCAST_ERROR_IO:
- * can't be opened. TETCAST_ERROR_DATA: truncated, damaged, no mesh, no cells, only surface cells, non-finite coordinates, indices out of
- * range. TETCAST_ERROR_ARGUMENT: has no such block or step; the message lists those there are. The reader library's own complaints become
+ * can't be opened. TETCAST_ERROR_DATA: truncated, damaged, no mesh, no cells, only surface cells, indices out of range. TETCAST_ERROR_ARGUMENT: has no such block or step; the message lists those there are. The reader library's own complaints become
  * part of the message. Formats that VTK reads without care are tried in a child process first, which may crash.
  *
  * Structured grids become hexahedra. Of a file in pieces or blocks, ghost cells (vtkGhostType, vtkGhostLevels: copies of another piece's
  * cells) and blanked ones are left out, as are pieces without volume, and coincident points of different pieces become one, so that the
  * mesh is that of the whole. Where pieces disagree about a point's value, the piece first in the file wins that does not call the point
- * a duplicate; where some pieces lack an array, it is NaN, which is drawn transparent. A warning says how often that was so. */
+ * a duplicate; where some pieces lack an array, it is NaN, which is drawn transparent. Points with coordinates that
+ * are NaN or infinite are left out, and so are the cells that use them. A warning says how often each of these was so. */
 TETCAST_API TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, const TetcastDatasetDesc *desc,
                                                TetcastDataset **dataset);
 
@@ -53,7 +53,8 @@ TETCAST_API TetcastStatus tetcast_dataset_read(TetcastContext *context, const ch
 TETCAST_API void tetcast_dataset_destroy(TetcastDataset **dataset);
 
 /* How many cells of type i = 0, 1, … the file has, largest count first; name e.g. "tetrahedron", "hexahedron", "triangle", static
- * storage. False beyond the last. Counted as they are in the file, before anything is cut, but without ghosts. */
+ * storage. False beyond the last. Counted as they are in the file, before anything is cut, but without ghosts
+ * and those left out for their coordinates. */
 TETCAST_API bool tetcast_dataset_cell_type(const TetcastDataset *dataset, int i, const char **name, int64_t *count);
 
 typedef struct TetcastDatasetArray {
@@ -78,6 +79,8 @@ typedef struct TetcastDatasetPieces {
   int64_t ghost_points;     /* points left out that only those used */
   int64_t merged_points;    /* points that became one with another */
   int64_t differing_points; /* of those the ones at which a point array had several values */
+  int64_t nonfinite_points; /* points left out, as a coordinate is NaN or infinite */
+  int64_t nonfinite_cells;  /* cells left out, as they use such points */
 } TetcastDatasetPieces;
 
 /* What became of the pieces. NULL: all 0. */

@@ -16,13 +16,22 @@ static struct {
   bool quiet;
   const char *place;
   bool failed; /* an error has been shown; guarded by the lock of stderr, as is the list */
-  bool once;
+  bool once, strict;
+  bool refused; /* a warning was an error */
   char **warnings; /* that were shown, without their digits */
   int count, capacity;
 } messages;
 
 void cli_set_quiet(bool quiet) {
   messages.quiet = quiet;
+}
+
+void cli_set_strict(bool strict) {
+  messages.strict = strict;
+}
+
+int cli_verdict(int code) {
+  return code == CLI_DONE && messages.refused ? CLI_FAILED : code;
 }
 
 void cli_warn_once(void) {
@@ -83,11 +92,13 @@ static bool is_repeated(const char *text) {
 }
 
 static void show_warning(const char *text) {
-  if (messages.quiet)
-    return;
   flockfile(stderr);
-  if (!messages.once || !is_repeated(text))
+  if (messages.strict) {
+    messages.refused = true;
+    show_error(messages.place, text);
+  } else if (!messages.quiet && !(messages.once && is_repeated(text))) {
     show("warning", NULL, text);
+  }
   funlockfile(stderr);
 }
 

@@ -57,6 +57,8 @@ static json_t *pieces_object(const TetcastDatasetPieces *pieces) {
   json_object_set_new(object, "ghost_points", json_integer(pieces->ghost_points));
   json_object_set_new(object, "merged_points", json_integer(pieces->merged_points));
   json_object_set_new(object, "differing_points", json_integer(pieces->differing_points));
+  json_object_set_new(object, "nonfinite_points", json_integer(pieces->nonfinite_points));
+  json_object_set_new(object, "nonfinite_cells", json_integer(pieces->nonfinite_cells));
   return object;
 }
 

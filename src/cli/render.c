@@ -35,7 +35,7 @@ static int check(Run *run) {
     return CLI_FAILED;
   if (options->source >> OPTION_BACKGROUND & 1 && render_options_floating(options)) /* on the command line, that is */
     cli_warning("--background has no effect: floating-point pixels hold the picture without background");
-  return CLI_DONE;
+  return cli_verdict(CLI_DONE);
 }
 
 /* Whether the picture can be written where and as it is to be. */
@@ -156,7 +156,7 @@ int render_frame(Run *run) {
     cli_warning(
         "%lld of %lld rays were lost on their way through the mesh: the picture has faults there, please report this",
         (long long)stats->render.lost, (long long)stats->render.rays);
-  return CLI_DONE;
+  return cli_verdict(CLI_DONE);
 }
 
 int render_write_image(Run *run, const char *path) {
@@ -206,6 +206,7 @@ int tetcast_cli_render(int argc, char **argv) {
   int code = render_options_parse(&run.options, argc, argv);
   if (code < 0) {
     cli_set_quiet(run.options.quiet);
+    cli_set_strict(run.options.strict);
     code = perform(&run);
   }
   render_await_image(&run);

@@ -87,6 +87,7 @@ static const struct {
     [OPTION_SCENE] = {"scene", KIND_PATH, AT(scene), .form = "expected a path"},
     [OPTION_SAVE_SCENE] = {"save-scene", KIND_PATH, AT(save_scene), .only = COMMAND_RENDER, .form = "expected a path"},
     [OPTION_RESUME] = {"resume", KIND_FLAG, AT(resume), .only = COMMAND_RENDER, .form = "expected true or false"},
+    [OPTION_STRICT] = {"strict", KIND_FLAG, AT(strict), .form = "expected true or false"},
     [OPTION_QUIET] = {"quiet", KIND_FLAG, AT(quiet), .form = "expected true or false"},
     [OPTION_REFINE] = {"refine", KIND_FLAG, AT(refine), .only = COMMAND_CONVERGE},
     [OPTION_NO_PLOTS] = {"no-plots", KIND_FLAG, AT(no_plots), .only = COMMAND_CONVERGE},
@@ -416,7 +417,7 @@ static int check_use(const RenderOptions *options) {
     return -1;
   if (!options->refine)
     return cli_usage_error(command_name(options), "no input given");
-  const uint64_t used = BIT(OPTION_OUTPUT) | BIT(OPTION_THREADS) | BIT(OPTION_QUIET) | BIT(OPTION_REFINE) |
+  const uint64_t used = BIT(OPTION_OUTPUT) | BIT(OPTION_THREADS) | BIT(OPTION_QUIET) | BIT(OPTION_STRICT) | BIT(OPTION_REFINE) |
                         BIT(OPTION_NO_PLOTS);
   for (int id = 0; id < OPTION_COUNT; id++)
     if (options->given & ~used & BIT(id))

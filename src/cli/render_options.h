@@ -43,6 +43,7 @@ typedef enum OptionId {
   OPTION_SCENE,
   OPTION_SAVE_SCENE,
   OPTION_RESUME,
+  OPTION_STRICT,
   OPTION_QUIET,
   OPTION_REFINE,
   OPTION_NO_PLOTS,
@@ -63,7 +64,7 @@ typedef struct RenderOptions {
   double merge_tolerance; /* negative unless given */
   RangeKind range_kind;   /* RANGE_FIXED: options->range */
   int opacity_model, traversal, isa, pixel_type; /* values of the library's enumerations */
-  int quiet, resume, refine, no_plots;
+  int quiet, strict, resume, refine, no_plots;
   uint64_t given;  /* bit 1 << OptionId: has a value from command line or scene file */
   uint64_t source; /* the same for the source being read alone */
 } RenderOptions;

@@ -21,7 +21,7 @@ int stage_begin(Stage *stage, const RenderOptions *options) {
   } else if (render_options_given(options, OPTION_OPACITY_MODEL)) {
     cli_warning("a preset states extinction: --opacity-model has no effect");
   }
-  return CLI_DONE;
+  return cli_verdict(CLI_DONE);
 }
 
 /* The dataset and its field; `step` NULL: the one that the options name. */
@@ -55,7 +55,7 @@ static int read_dataset(Stage *stage, const RenderOptions *options, const int64_
   if (status == TETCAST_OK)
     status = cli_vtk()->dataset_mesh(stage->dataset, &stage->mesh);
   stage->read_seconds += cli_seconds() - start;
-  return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
+  return status == TETCAST_OK ? cli_verdict(CLI_DONE) : cli_failed(status);
 }
 
 int stage_read(Stage *stage, const RenderOptions *options) {
@@ -92,7 +92,7 @@ int stage_read_values(Stage *stage, const RenderOptions *options, int64_t step, 
   tetcast_field_range(stage->field, values->range, &values->nonfinite);
   values->count = tetcast_field_values(stage->field).count;
   values->mean = mean_of(stage->field);
-  return CLI_DONE;
+  return cli_verdict(CLI_DONE);
 }
 
 /* 64 bits that two meshes share by a chance of 2^-64, unless they have the same numbers. */
@@ -157,7 +157,7 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
     cli_warning("array %s: %lld values are NaN or infinite; the cells they touch are transparent", stage->array,
                 (long long)stage->info.field_nonfinite);
   stage->prepare_seconds = cli_seconds() - start;
-  return view_complete(options, stage->info.bounds, &stage->camera) ? CLI_DONE : CLI_FAILED;
+  return view_complete(options, stage->info.bounds, &stage->camera) ? cli_verdict(CLI_DONE) : CLI_FAILED;
 }
 
 int stage_shade(Stage *stage, const RenderOptions *options, const double range[2]) {

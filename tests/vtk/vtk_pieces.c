@@ -196,6 +196,43 @@ static void test_values(void **state) {
   tetcast_dataset_destroy(&dataset);
 }
 
+/* Points whose coordinates are not finite go with the cells that use them, also where ghosts go and points are merged. */
+static void test_nonfinite(void **state) {
+  Fixture *fixture = *state;
+  text_file(fixture, "left.vtu", VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "1 2 3 4")), LEFT)));
+  text_file(fixture, "bad.vtu",
+            VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "2 3 4 9")) OF_CELLS(VALUES("Float32", "b", "8")), "1 0 0 0 1 0 0 0 1 1 nan 1")));
+  text_file(fixture, "right.vtu", VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "2 3 4 5")) OF_CELLS(VALUES("Float32", "b", "7")), RIGHT)));
+  const char *path = text_file(fixture, "all.pvtu", PVTU(SOURCE("left.vtu") SOURCE("bad.vtu") SOURCE("right.vtu")));
+  TetcastDataset *dataset = read_with(fixture, path, tetcast_dataset_desc_default());
+  assert_int_equal(fixture->warnings, 2); /* of the coordinate, and of b */
+  const TetcastDatasetPieces pieces = tetcast_dataset_pieces(dataset);
+  assert_int_equal(pieces.nonfinite_points, 1);
+  assert_int_equal(pieces.nonfinite_cells, 1);
+  assert_int_equal(pieces.merged_points, 6);
+  assert_int_equal(pieces.ghost_cells, 0);
+  assert_int_equal(tetcast_dataset_point_count(dataset), 12);
+  assert_int_equal(tetcast_dataset_cell_count(dataset), 3);
+  assert_int_equal(health_of(fixture, dataset).boundary_faces, 6);
+  assert_int_equal(health_of(fixture, dataset).unused_vertices, 0);
+  assert_true(value_at(dataset, "a", 1, 1, 1) == 5);
+  TetcastField *field;
+  assert_int_equal(tetcast_dataset_field(dataset, "b", &field, NULL), TETCAST_OK);
+  assert_true(isnan(tetcast_field_value(field, 0)) && tetcast_field_value(field, 1) == 7);
+  tetcast_field_destroy(&field);
+  tetcast_dataset_destroy(&dataset);
+
+  text_file(fixture, "ghost.vtu", VTU(PIECE(OF_CELLS(VALUES("UInt8", "vtkGhostType", "1")), "1 0 0 0 1 0 0 0 1 inf 1 1")));
+  path = text_file(fixture, "all.pvtu", PVTU(SOURCE("left.vtu") SOURCE("ghost.vtu")));
+  dataset = read_with(fixture, path, tetcast_dataset_desc_default());
+  assert_int_equal(tetcast_dataset_pieces(dataset).ghost_cells, 1);
+  assert_int_equal(tetcast_dataset_pieces(dataset).nonfinite_points, 0);
+  assert_int_equal(tetcast_dataset_point_count(dataset), 8);
+  tetcast_dataset_destroy(&dataset);
+  read_bad(fixture, text_file(fixture, "b.pvtu", PVTU(SOURCE("bad.vtu") SOURCE("bad.vtu"))), TETCAST_ERROR_DATA,
+           "no cells without coordinates that are NaN or infinite");
+}
+
 /* Parts of a machine that had no work, files of nothing but ghosts, and lists that lead nowhere. */
 static void test_odd_lists(void **state) {
   Fixture *fixture = *state;
@@ -255,6 +292,6 @@ static void test_others_pieces(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {TEST(test_layers), TEST(test_blanked), TEST(test_tolerance), TEST(test_cracks),
-                                     TEST(test_values), TEST(test_odd_lists), TEST(test_others_pieces)};
+                                     TEST(test_values), TEST(test_nonfinite), TEST(test_odd_lists), TEST(test_others_pieces)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
