@@ -28,6 +28,8 @@ typedef struct TetcastDatasetDesc {
   double time;       /* the step at this time instead; NaN: none asked for */
   double merge_tolerance; /* negative: only points of different pieces are merged, where they coincide exactly. Else all points no
                              further than this apart, in the file's unit of length; 0: all that coincide exactly */
+  bool cell_to_point;     /* fields of cell arrays are of points: at each the plain mean over the file's cells that use it, component by
+                           * component; only volumetric cells count, and not those whose value is NaN or infinite */
 } TetcastDatasetDesc;
 
 /* All blocks, the first step, no tolerance. */
@@ -106,7 +108,8 @@ TETCAST_API TetcastStatus tetcast_dataset_mesh(const TetcastDataset *dataset, Te
  * an array of several is taken by magnitude. NULL: the active scalars of the points, of the cells, else the first point array of one
  * component, the first cell array of one component, the first array; arrays that number points or cells (global ids) only when there is
  * nothing else. A file without arrays is TETCAST_ERROR_DATA. An unknown name or component is TETCAST_ERROR_ARGUMENT and the
- * message lists those there are. Cell arrays follow the tetrahedra the cells were cut into. The dataset must outlive the field,
+ * message lists those there are. Cell arrays follow the tetrahedra the cells were cut into, or are
+ * averaged if the description asked for that. The dataset must outlive the field,
  * which the caller destroys. `name` (may be NULL) receives the selector that selects the same again, valid while the dataset lives. */
 TETCAST_API TetcastStatus tetcast_dataset_field(const TetcastDataset *dataset, const char *selector, TetcastField **field,
                                                 const char **name);

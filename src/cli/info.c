@@ -24,6 +24,7 @@ static const char help_text[] =
     "      --time STEP          of a series this step, from 0, the default; -1 is the last; or t=TIME\n"
     "      --merge-tolerance D  points no further apart become one; default: only those of different pieces, if they\n"
     "                           coincide\n"
+    "      --cell-to-point      ranges of cell arrays are those of their averages at the points\n"
     "      --strict             fails with the reader's first warning, or with what of the list is a defect\n"
     "      --formats            lists the formats that can be read\n"
     "  -h, --help               this text\n"
@@ -277,7 +278,7 @@ static int print_formats(void) {
 typedef struct Request {
   const char *path, *block, *time;
   double merge_tolerance;
-  bool json, formats, strict;
+  bool json, formats, strict, cell_to_point;
 } Request;
 
 static int parse(int argc, char **argv, Request *request) {
@@ -286,7 +287,8 @@ static int parse(int argc, char **argv, Request *request) {
                                         {"block", required_argument, NULL, 'b'},
                                         {"time", required_argument, NULL, 't'},
                                         {"merge-tolerance", required_argument, NULL, 'm'},
-                                        {"strict", no_argument, NULL, 's'},
+                                        {"strict", no_argument, NULL, 'S'},
+                                        {"cell-to-point", no_argument, NULL, 'c'},
                                         {"help", no_argument, NULL, 'h'},
                                         {NULL, 0, NULL, 0}};
   *request = (Request){.merge_tolerance = -1};
@@ -304,8 +306,11 @@ static int parse(int argc, char **argv, Request *request) {
     case 'f':
       request->formats = true;
       break;
-    case 's':
+    case 'S':
       request->strict = true;
+      break;
+    case 'c':
+      request->cell_to_point = true;
       break;
     case 'b':
       if (!*optarg)
@@ -350,6 +355,7 @@ int tetcast_cli_info(int argc, char **argv) {
   if (info.vtk) {
     info.desc = info.vtk->dataset_desc_default();
     render_option_dataset(request.block, request.time, request.merge_tolerance, &info.desc);
+    info.desc.cell_to_point = request.cell_to_point;
     const TetcastStatus status = get_info(&info, context);
     if (status == TETCAST_OK && request.strict)
       report_defects(&info);

@@ -46,6 +46,7 @@ static const struct {
     [OPTION_TIME] = {"time", KIND_TEXT, AT(time), .form = "expected a step, from 0 (or -1, the last, and back), t=TIME, or all"},
     [OPTION_MERGE_TOLERANCE] = {"merge-tolerance", KIND_NUMBERS, AT(merge_tolerance), 1, 1, 0, DBL_MAX,
                                 .form = "expected a distance, 0 or above"},
+    [OPTION_CELL_TO_POINT] = {"cell-to-point", KIND_FLAG, AT(cell_to_point), .form = "expected true or false"},
     [OPTION_TRANSFER] = {"transfer", KIND_PATH, AT(transfer), .excludes = BIT(OPTION_PRESET) | BIT(OPTION_RANGE),
                          .form = "expected a transfer function or the path of one"},
     [OPTION_PRESET] = {"preset", KIND_TEXT, AT(preset), .excludes = BIT(OPTION_TRANSFER), .form = "expected a name"},

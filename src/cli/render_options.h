@@ -19,6 +19,7 @@ typedef enum OptionId {
   OPTION_BLOCK,
   OPTION_TIME,
   OPTION_MERGE_TOLERANCE,
+  OPTION_CELL_TO_POINT,
   OPTION_TRANSFER,
   OPTION_PRESET,
   OPTION_RANGE,
@@ -64,7 +65,7 @@ typedef struct RenderOptions {
   double merge_tolerance; /* negative unless given */
   RangeKind range_kind;   /* RANGE_FIXED: options->range */
   int opacity_model, traversal, isa, pixel_type; /* values of the library's enumerations */
-  int quiet, strict, resume, refine, no_plots;
+  int cell_to_point, quiet, strict, resume, refine, no_plots;
   uint64_t given;  /* bit 1 << OptionId: has a value from command line or scene file */
   uint64_t source; /* the same for the source being read alone */
 } RenderOptions;

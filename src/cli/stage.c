@@ -31,6 +31,7 @@ static TetcastStatus read_field(Stage *stage, const RenderOptions *options, cons
   const char *array = NULL;
   TetcastDatasetDesc desc = vtk->dataset_desc_default();
   render_option_dataset(options->block, options->time, options->merge_tolerance, &desc);
+  desc.cell_to_point = options->cell_to_point;
   if (step) {
     desc.step = *step;
     desc.time = NAN;

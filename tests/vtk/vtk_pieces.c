@@ -233,6 +233,71 @@ static void test_nonfinite(void **state) {
            "no cells without coordinates that are NaN or infinite");
 }
 
+/* The mean of the neighbours' numbers along one axis of the box: cells `at − 1` and `at`, of `count`. */
+static double mean_number(double at, int count) { return at == 0 ? 0 : at == count ? count - 1 : at - 0.5; }
+
+/* Cell arrays averaged to points are those of the whole for pieces, too; cells without a value don't count. */
+static void test_cell_to_point(void **state) {
+  Fixture *fixture = *state;
+  TetcastDatasetDesc desc = tetcast_dataset_desc_default();
+  desc.cell_to_point = true;
+  for (int ghosts = -1; ghosts <= GHOST_LEVELS; ++ghosts) {
+    const char *path = in_folder(fixture, "a.vtu");
+    sample_layers(path, 0, ghosts < 0 ? 4 : 2, ghosts < 0 ? GHOST_NONE : (SampleGhosts)ghosts);
+    if (ghosts >= 0) {
+      sample_layers(in_folder(fixture, "b.vtu"), 2, 4, (SampleGhosts)ghosts);
+      path = text_file(fixture, "all.pvtu", PVTU(SOURCE("a.vtu") SOURCE("b.vtu")));
+    }
+    TetcastDataset *dataset = read_with(fixture, path, desc);
+    TetcastMesh *mesh = mesh_of(dataset);
+    TetcastField *c, *s;
+    const char *name;
+    assert_int_equal(tetcast_dataset_field(dataset, "c", &c, &name), TETCAST_OK);
+    assert_string_equal(name, "c");
+    assert_int_equal(tetcast_dataset_field(dataset, "s", &s, NULL), TETCAST_OK); /* of points: as it is */
+    assert_int_equal(tetcast_field_association(c), TETCAST_POINT);
+    assert_int_equal(tetcast_field_values(c).count, BOX_POINTS);
+    for (int64_t i = 0; i < BOX_POINTS; ++i) {
+      double p[3];
+      tetcast_mesh_vertex(mesh, i, p);
+      const double expected = mean_number(p[0], 3) + 3 * mean_number(p[1], 2) + 6 * mean_number(2 * p[2], 4);
+      assert_true(fabs(tetcast_field_value(c, i) - expected) < 1e-13 * 24);
+      assert_true(tetcast_field_value(s, i) == p[0] + 2 * p[1] + 4 * p[2]);
+    }
+    tetcast_field_destroy(&c);
+    tetcast_field_destroy(&s);
+    tetcast_mesh_destroy(&mesh);
+    tetcast_dataset_destroy(&dataset);
+  }
+
+  /* Three cells at a triangle: a number, NaN, and a surface, which is no cell of the mesh; vectors by components, then their length. */
+  const char *path = text_file(
+      fixture, "three.vtu",
+      VTU("<Piece NumberOfPoints=\"6\" NumberOfCells=\"3\">" OF_CELLS(
+          VALUES("Float64", "c", "4 nan 100") "<DataArray type=\"Float64\" Name=\"v\" NumberOfComponents=\"2\" format=\"ascii\">"
+                                              "3 4 -3 4 9 9</DataArray>") "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
+          "format=\"ascii\">" LEFT " 1 1 1 5 5 5</DataArray></Points><Cells>" VALUES("Int32", "connectivity", "0 1 2 3 1 2 3 4 1 2 5")
+              VALUES("Int32", "offsets", "4 8 11") VALUES("UInt8", "types", "10 10 5") "</Cells></Piece>"));
+  TetcastDataset *dataset = read_with(fixture, path, desc);
+  static const struct {
+    const char *selector;
+    double values[5];
+  } cases[] = {{"c", {4, 4, 4, 4, NAN}}, {"v:0", {3, 0, 0, 0, -3}}, {"v", {5, 4, 4, 4, 5}}};
+  for (int i = 0; i < 3; ++i) {
+    TetcastField *field;
+    assert_int_equal(tetcast_dataset_field(dataset, cases[i].selector, &field, NULL), TETCAST_OK);
+    int64_t nonfinite;
+    tetcast_field_range(field, NULL, &nonfinite);
+    assert_int_equal(nonfinite, i == 0); /* and not the point that only the surface has */
+    for (int k = 0; k < 5; ++k) {
+      const double value = tetcast_field_value(field, k), expected = cases[i].values[k];
+      assert_true(value == expected || (isnan(value) && isnan(expected)));
+    }
+    tetcast_field_destroy(&field);
+  }
+  tetcast_dataset_destroy(&dataset);
+}
+
 /* Parts of a machine that had no work, files of nothing but ghosts, and lists that lead nowhere. */
 static void test_odd_lists(void **state) {
   Fixture *fixture = *state;
@@ -292,6 +357,6 @@ static void test_others_pieces(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {TEST(test_layers), TEST(test_blanked), TEST(test_tolerance), TEST(test_cracks),
-                                     TEST(test_values), TEST(test_nonfinite), TEST(test_odd_lists), TEST(test_others_pieces)};
+                                     TEST(test_values), TEST(test_nonfinite), TEST(test_cell_to_point), TEST(test_odd_lists), TEST(test_others_pieces)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -104,6 +104,10 @@ static void read_dataset(TetcastContext *context, const char *path, const Tetcas
     make_tetrahedra(path, grid, dataset->points, options, &dataset->tetrahedra);
   }
   warn_of_cut(dataset);
+  if (desc.cell_to_point) {
+    dataset->corners = grid->GetCells();
+    dataset->types = grid->GetCellTypesArray();
+  }
   take_arrays(path, grid->GetPointData(), TETCAST_POINT, points, &dataset->arrays);
   take_arrays(path, grid->GetCellData(), TETCAST_CELL, cells, &dataset->arrays);
 }
