@@ -298,6 +298,40 @@ static void test_cell_to_point(void **state) {
   tetcast_dataset_destroy(&dataset);
 }
 
+/* Each piece of a .vtu has arrays of its own, in an order of its own. */
+static void test_arrays_of_pieces(void **state) {
+  Fixture *fixture = *state;
+  const char *path = text_file(
+      fixture, "pieces.vtu",
+      VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "1 2 3 4") VALUES("Float64", "b", "5 6 7 8")) OF_CELLS(VALUES("Float32", "c", "1")), LEFT)
+              PIECE(OF_POINTS(VALUES("Float32", "d", "1 1 1 9") VALUES("Float64", "b", "6 7 8 10") VALUES("Float64", "a", "2 3 4 11"))
+                        OF_CELLS(VALUES("Int8", "e", "2") VALUES("Float32", "c", "3")), RIGHT)
+                  PIECE("", "1 0 0 0 1 0 1 1 1 3 0 0")));
+  TetcastDataset *dataset = read_with(fixture, path, tetcast_dataset_desc_default());
+  assert_int_equal(fixture->warnings, 1); /* five arrays are missing somewhere */
+  assert_int_equal(tetcast_dataset_pieces(dataset).pieces, 3);
+  static const char *const names[] = {"a", "b", "d", "c", "e"};
+  TetcastDatasetArray array;
+  for (int i = 0; i < 5; ++i) {
+    assert_true(tetcast_dataset_array(dataset, i, &array));
+    assert_string_equal(array.name, names[i]);
+    assert_int_equal(array.association, i < 3 ? TETCAST_POINT : TETCAST_CELL);
+  }
+  assert_false(tetcast_dataset_array(dataset, 5, &array));
+  assert_true(value_at(dataset, "a", 0, 0, 0) == 1 && value_at(dataset, "a", 1, 1, 1) == 11 && isnan(value_at(dataset, "a", 3, 0, 0)));
+  assert_true(value_at(dataset, "b", 0, 0, 0) == 5 && value_at(dataset, "b", 1, 1, 1) == 10);
+  assert_true(value_at(dataset, "d", 1, 1, 1) == 9 && isnan(value_at(dataset, "d", 0, 0, 0)));
+  TetcastField *field;
+  for (int i = 3; i < 5; ++i) {
+    assert_int_equal(tetcast_dataset_field(dataset, names[i], &field, NULL), TETCAST_OK);
+    const double left = tetcast_field_value(field, 0), right = tetcast_field_value(field, 1);
+    assert_true(i == 3 ? left == 1 && right == 3 : isnan(left) && right == 2);
+    assert_true(isnan(tetcast_field_value(field, 2)));
+    tetcast_field_destroy(&field);
+  }
+  tetcast_dataset_destroy(&dataset);
+}
+
 /* Parts of a machine that had no work, files of nothing but ghosts, and lists that lead nowhere. */
 static void test_odd_lists(void **state) {
   Fixture *fixture = *state;
@@ -357,6 +391,6 @@ static void test_others_pieces(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {TEST(test_layers), TEST(test_blanked), TEST(test_tolerance), TEST(test_cracks),
-                                     TEST(test_values), TEST(test_nonfinite), TEST(test_cell_to_point), TEST(test_odd_lists), TEST(test_others_pieces)};
+                                     TEST(test_values), TEST(test_nonfinite), TEST(test_cell_to_point), TEST(test_arrays_of_pieces), TEST(test_odd_lists), TEST(test_others_pieces)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
+#include <vtkDataArraySelection.h>
 #include <vtkIdTypeArray.h>
 #include <vtkImageData.h>
 #include <vtkInputStream.h>
@@ -193,8 +195,33 @@ public:
 protected:
   int ReadPieceData() override { return faces_fit() ? vtkXMLUnstructuredGridReader::ReadPieceData() : 0; }
 
+  // VTK takes the first piece's arrays for those of all: it passes over others, and puts the values of one into another that it expects
+  // in its place.
+  void SetupOutputInformation(vtkInformation *information) override {
+    vtkXMLUnstructuredGridReader::SetupOutputInformation(information);
+    for (int i = 0; i < this->NumberOfPieces; ++i) {
+      select_all(this->PointDataElements[i], this->PointDataArraySelection);
+      select_all(this->CellDataElements[i], this->CellDataArraySelection);
+    }
+  }
+  void SetupOutputData() override { // pieces are read one by one
+    const int piece = this->StartPiece < this->NumberOfPieces ? this->StartPiece : 0;
+    std::swap(this->PointDataElements[0], this->PointDataElements[piece]);
+    std::swap(this->CellDataElements[0], this->CellDataElements[piece]);
+    vtkXMLUnstructuredGridReader::SetupOutputData();
+    std::swap(this->PointDataElements[0], this->PointDataElements[piece]);
+    std::swap(this->CellDataElements[0], this->CellDataElements[piece]);
+  }
+
 private:
   using Numbers = vtkSmartPointer<vtkIdTypeArray>;
+
+  static void select_all(vtkXMLDataElement *arrays, vtkDataArraySelection *selection) {
+    for (int i = 0; arrays && i < arrays->GetNumberOfNestedElements(); ++i) {
+      const char *name = arrays->GetNestedElement(i)->GetAttribute("Name");
+      if (name) selection->AddArray(name);
+    }
+  }
 
   Numbers numbers(vtkXMLDataElement *element, int64_t count) {
     const auto values = vtkSmartPointer<vtkAbstractArray>::Take(this->CreateArray(element));
