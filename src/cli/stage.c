@@ -32,6 +32,7 @@ static TetcastStatus read_field(Stage *stage, const RenderOptions *options, cons
   TetcastDatasetDesc desc = vtk->dataset_desc_default();
   render_option_dataset(options->block, options->time, options->merge_tolerance, &desc);
   desc.cell_to_point = options->cell_to_point;
+  desc.only = stage->array; /* of the step before */
   if (step) {
     desc.step = *step;
     desc.time = NAN;

@@ -100,7 +100,7 @@ for signal in HUP:129 TERM:143; do # the shell keeps SIGINT from what runs besid
   checks=$((checks + 1))
   IFS=: read -r name expected <<<"$signal"
   rm -f slow*
-  "$tetcast" render s.pvd -o slow.##.png --size 800x800 --samples 64 --stats slow.json --save-scene slow-scene.json 2>"$work.err" &
+  "$tetcast" render s.pvd -o slow.##.png --size 600x600 --samples 64 --stats slow.json --save-scene slow-scene.json 2>"$work.err" &
   pid=$!
   for _ in $(seq 600); do
     [ ! -e slow.00.png ] || break
@@ -116,7 +116,7 @@ for signal in HUP:129 TERM:143; do # the shell keeps SIGINT from what runs besid
   [ ! -e slow.02.png ] && [ ! -e slow.json ] && [ ! -e slow-scene.json ] && [ -z "$(find . -name '.tetcast*')" ] ||
     fail "files are left: $(files)"
 done
-accept render s.pvd -o slow.##.png --size 800x800 --samples 64 --resume --quiet
+accept render s.pvd -o slow.##.png --size 600x600 --samples 64 --resume --quiet
 exists slow.00.png slow.01.png slow.02.png
 
 # A step that can't be read ends the run, and what was made stays.
@@ -126,6 +126,9 @@ refuse 1 'missing.vtu' render bad.pvd --time all $small -o bad.png
 "$tetcast" render bad.pvd --time all --range 0,60 $small -o bad.png 2>err && fail 'exit code 0 with a missing step'
 grep -q '^tetcast: error: step 2: .*missing.vtu' err || fail "$(cat err)"
 exists bad.0000.png bad.0001.png
+sed 's/Name="s"/Name="t"/' b.vtu >other.vtu
+sed -i 's/missing.vtu/other.vtu/' bad.pvd
+refuse 1 "step 2: bad.pvd: has no array 's'" render bad.pvd --time all $small -o none.png
 # Values that are not finite: said once, and not for each step.
 scalar='0 nan 3 2 3 4 6 5' vtu a.vtu "$five_tetrahedra" 10
 scalar='0 nan 30 nan 30 40 60 50' vtu b.vtu "$five_tetrahedra" 10

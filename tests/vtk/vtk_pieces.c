@@ -330,6 +330,29 @@ static void test_arrays_of_pieces(void **state) {
     tetcast_field_destroy(&field);
   }
   tetcast_dataset_destroy(&dataset);
+
+  /* Of all these one alone, and one that is not there. */
+  static const char *const selectors[] = {"b", "b:0", "e", "c:mag", "bb", "zz"}, *const found[] = {"b", "b", "e", "c", NULL, NULL};
+  for (int i = 0; i < 6; ++i) {
+    TetcastDatasetDesc desc = tetcast_dataset_desc_default();
+    desc.only = selectors[i];
+    dataset = read_with(fixture, path, desc);
+    assert_true(tetcast_dataset_array(dataset, 0, &array) == (found[i] != NULL));
+    if (found[i]) assert_string_equal(array.name, found[i]);
+    assert_false(tetcast_dataset_array(dataset, 1, &array));
+    assert_int_equal(tetcast_dataset_field(dataset, selectors[i], &field, NULL), found[i] ? TETCAST_OK : TETCAST_ERROR_ARGUMENT);
+    if (!found[i]) assert_complaint(fixture, path, "has no array");
+    tetcast_field_destroy(&field);
+    tetcast_dataset_destroy(&dataset);
+  }
+  for (int ghosts = GHOST_TYPES; ghosts <= GHOST_LEVELS; ++ghosts) { /* which are seen at any rate */
+    sample_layers(in_folder(fixture, "ghosts.vtu"), 1, 3, (SampleGhosts)ghosts);
+    TetcastDatasetDesc desc = tetcast_dataset_desc_default();
+    desc.only = "s";
+    dataset = read_with(fixture, fixture->path, desc);
+    assert_layers(fixture, dataset, 1, 3, 1, false);
+    tetcast_dataset_destroy(&dataset);
+  }
 }
 
 /* Parts of a machine that had no work, files of nothing but ghosts, and lists that lead nowhere. */

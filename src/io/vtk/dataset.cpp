@@ -82,6 +82,7 @@ static void read_dataset(TetcastContext *context, const char *path, const Tetcas
   Contents contents = read_pieces_of(reading);
   dataset->context = context;
   dataset->path = path;
+  if (desc.only) dataset->only = desc.only;
   dataset->pieces.surfaces = contents.surfaces;
   dataset->blocks = std::move(contents.blocks);
   dataset->times = std::move(contents.times);

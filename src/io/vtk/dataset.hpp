@@ -40,6 +40,7 @@ struct TetcastDataset {
   int64_t step = 0;
   vtkSmartPointer<vtkDataArray> points; // float32 or float64
   tcv::Tetrahedra tetrahedra;
+  std::string only;                        // arrays that were to be read; empty: all
   std::vector<tcv::Array> arrays;          // point arrays first
   vtkSmartPointer<vtkCellArray> corners;   // of the file's cells, and
   vtkSmartPointer<vtkUnsignedCharArray> types; // theirs; null unless cell arrays are to be averaged

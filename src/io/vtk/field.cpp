@@ -49,6 +49,8 @@ static const Array *default_array(const TetcastDataset *dataset) {
 }
 
 static Selection select(const TetcastDataset *dataset, const char *selector) {
+  if (dataset->arrays.empty() && !dataset->only.empty())
+    fail(TETCAST_ERROR_ARGUMENT, "%s: has no array '%s'", dataset->path.c_str(), dataset->only.c_str());
   if (dataset->arrays.empty())
     fail(TETCAST_ERROR_DATA, "%s: has no arrays over points or cells", dataset->path.c_str());
   Selection selection;
