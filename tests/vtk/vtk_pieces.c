@@ -298,6 +298,19 @@ static void test_cell_to_point(void **state) {
   tetcast_dataset_destroy(&dataset);
 }
 
+/* A cell that has a point twice counts once there. */
+static void test_cell_to_point_twice(void **state) {
+  Fixture *fixture = *state;
+  TetcastDatasetDesc desc = tetcast_dataset_desc_default();
+  desc.cell_to_point = true;
+  const char *path = text_file(fixture, "twice.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n" LEFT
+                               "\nCELLS 2 10\n4 0 1 2 3\n4 1 1 2 3\nCELL_TYPES 2\n10\n10\nCELL_DATA 2\nSCALARS c float\n"
+                               "LOOKUP_TABLE default\n4 10\n");
+  TetcastDataset *dataset = read_with(fixture, path, desc);
+  assert_true(value_at(dataset, "c", 0, 0, 0) == 4 && value_at(dataset, "c", 1, 0, 0) == 7 && value_at(dataset, "c", 0, 1, 0) == 7);
+  tetcast_dataset_destroy(&dataset);
+}
+
 /* Each piece of a .vtu has arrays of its own, in an order of its own. */
 static void test_arrays_of_pieces(void **state) {
   Fixture *fixture = *state;
@@ -414,6 +427,6 @@ static void test_others_pieces(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {TEST(test_layers), TEST(test_blanked), TEST(test_tolerance), TEST(test_cracks),
-                                     TEST(test_values), TEST(test_nonfinite), TEST(test_cell_to_point), TEST(test_arrays_of_pieces), TEST(test_odd_lists), TEST(test_others_pieces)};
+                                     TEST(test_values), TEST(test_nonfinite), TEST(test_cell_to_point), TEST(test_cell_to_point_twice), TEST(test_arrays_of_pieces), TEST(test_odd_lists), TEST(test_others_pieces)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
