@@ -60,11 +60,13 @@ enum { BAR_WIDTH = 40 };
 static struct {
   const char *label;
   double started, drawn;
-  bool visible;
-} bar;
+  double begin, end; /* of the part, while `whole` */
+  bool visible, whole;
+} bar = {.end = 1};
 
 bool cli_progress_show(double fraction) {
   const double now = cli_seconds();
+  fraction = bar.begin + (bar.end - bar.begin) * fraction;
   if (bar.label && now - bar.started > 1 && now - bar.drawn > 0.1) {
     char cells[BAR_WIDTH + 1];
     const int filled = (int)(BAR_WIDTH * (fraction > 1 ? 1 : fraction < 0 ? 0 : fraction));
@@ -83,11 +85,24 @@ static bool advance(void *user, double fraction) {
   return cli_progress_show(fraction);
 }
 
-TetcastProgress cli_progress(const char *label) {
+static void begin_bar(const char *label) {
   bar.label = !cli_quiet() && isatty(STDERR_FILENO) ? label : NULL;
   bar.started = cli_seconds();
   bar.drawn = 0;
+}
+
+TetcastProgress cli_progress(const char *label) {
+  if (!bar.whole)
+    begin_bar(label);
   return (TetcastProgress){.function = advance, .user = NULL};
+}
+
+void cli_progress_part(const char *label, double begin, double end) {
+  if (label && bar.label != label)
+    begin_bar(label);
+  bar.whole = label != NULL;
+  bar.begin = label ? begin : 0;
+  bar.end = label ? end : 1;
 }
 
 void cli_progress_clear(void) {
