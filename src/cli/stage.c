@@ -31,12 +31,16 @@ int stage_read(Stage *stage, const RenderOptions *options) {
   TetcastDatasetDesc desc = vtk->dataset_desc_default();
   render_option_dataset(options->block, options->time, options->merge_tolerance, &desc);
   TetcastStatus status = vtk->dataset_read(stage->context, options->input, &desc, &stage->dataset);
-  if (status == TETCAST_OK)
+  if (status == TETCAST_OK && render_options_direct(options)) {
+    if (!coefficients_read(stage->dataset, options, &stage->coefficients))
+      return CLI_FAILED;
+  } else if (status == TETCAST_OK) {
     status = vtk->dataset_field(stage->dataset, options->array, &stage->field, &array);
-  if (status == TETCAST_OK) {
-    stage->array = cli_duplicate(array);
-    status = vtk->dataset_mesh(stage->dataset, &stage->mesh);
+    if (status == TETCAST_OK)
+      stage->array = cli_duplicate(array);
   }
+  if (status == TETCAST_OK)
+    status = vtk->dataset_mesh(stage->dataset, &stage->mesh);
   stage->read_seconds = cli_seconds() - start;
   return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }
@@ -47,7 +51,7 @@ static TetcastStatus create_volume(Stage *stage, const RenderOptions *options) {
   desc.progress = cli_progress("preparing");
   TetcastStatus status = tetcast_volume_create(stage->context, stage->mesh, &desc, &stage->volume);
   cli_progress_clear();
-  if (status == TETCAST_OK)
+  if (status == TETCAST_OK && stage->field)
     status = tetcast_volume_set_field(stage->volume, stage->field);
   if (status == TETCAST_OK)
     tetcast_volume_info(stage->volume, &stage->info);
@@ -56,6 +60,10 @@ static TetcastStatus create_volume(Stage *stage, const RenderOptions *options) {
 
 static TetcastStatus create_scene(Stage *stage, const RenderOptions *options) {
   TetcastStatus status = TETCAST_OK;
+  if (!stage->field) {
+    status = tetcast_scene_create(stage->context, stage->volume, &stage->scene);
+    return status == TETCAST_OK ? coefficients_set(stage->scene, options, &stage->coefficients) : status;
+  }
   if (!stage->transfer_function) {
     const double *range = render_options_given(options, OPTION_RANGE) ? options->range : stage->info.field_range;
     const char *preset = render_options_given(options, OPTION_PRESET) ? options->preset : "viridis";
@@ -87,6 +95,7 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
 
 void stage_drop_dataset(Stage *stage) {
   tetcast_field_destroy(&stage->field);
+  coefficients_release(&stage->coefficients);
   tetcast_mesh_destroy(&stage->mesh);
   if (stage->dataset)
     cli_vtk()->dataset_destroy(&stage->dataset);

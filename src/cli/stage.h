@@ -6,19 +6,21 @@
 #include <tetcast/tetcast.h>
 
 #include "adapter.h"
+#include "coefficients.h"
 #include "render_options.h"
 
 typedef struct Stage {
   TetcastContext *context;
-  TetcastDataset *dataset; /* these three only until stage_drop_dataset() */
+  TetcastDataset *dataset; /* these four only until stage_drop_dataset() */
   TetcastMesh *mesh;
-  TetcastField *field;
+  TetcastField *field;        /* NULL: coefficients instead */
+  Coefficients coefficients;
   TetcastVolume *volume;
   TetcastVolumeInfo info;
   TetcastTransferFunction *transfer_function;
   TetcastScene *scene;
   TetcastCamera camera;
-  char *array; /* what was read, as --array would name it */
+  char *array; /* what was read, as --array would name it; NULL: coefficients */
   double read_seconds, prepare_seconds;
 } Stage;
 
