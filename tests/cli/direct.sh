@@ -4,7 +4,7 @@
 needs vtk openimageio
 vtu cube.vtu "$five_tetrahedra" 10
 scalar='0 1 3 -2 3 4 6 5' vtu negative.vtu "$five_tetrahedra" 10
-scalar='0 1 nan 2 3 4 6 nan' vtu nan.vtu "$five_tetrahedra" 10
+scalar='0 1 nan 2 nan 4 6 5' vtu nan.vtu "$five_tetrahedra" 10
 
 # With an emission of as much as the extinction, the radiance is the opacity: the picture of white dust.
 echo '{"color": [[0,1,1,1]], "extinction": [[0,0],[6,6]]}' >white.json
