@@ -28,13 +28,12 @@ void tc_spans_append(TcSpans *spans, TcSpan span) {
   spans->data[spans->count++] = span;
 }
 
-/* Where the ray crosses the triangle of three points, if it does. */
-static bool crosses(const TcPoint *a, const TcPoint *b, const TcPoint *c, TcWalk *face) {
-  const double ab = tc_edge(a, b), bc = tc_edge(b, c), ca = tc_edge(c, a);
-  if (!tc_inside(ab, bc, ca)) return false;
-  *face = (TcWalk){.v = {*a, *b, *c}, .edge = {ab, bc, ca}};
-  tc_walk_cross(face);
-  return true;
+/* Whether the ray crosses the triangle of three points, and its edges' values. */
+static inline bool crosses(const TcPoint *a, const TcPoint *b, const TcPoint *c, double edge[3]) {
+  edge[0] = tc_edge(a, b);
+  edge[1] = tc_edge(b, c);
+  edge[2] = tc_edge(c, a);
+  return tc_inside(edge[0], edge[1], edge[2]);
 }
 
 static void shell_candidate(void *user, uint32_t i) {
@@ -42,8 +41,12 @@ static void shell_candidate(void *user, uint32_t i) {
   const TcShellFace *face = &query->shell->faces[i];
   TcPoint p[3];
   for (int k = 0; k < 3; ++k) p[k] = tc_project(query->shell->volume, query->ray, face->vertex[k]);
-  TcWalk at;
-  if (crosses(&p[0], &p[1], &p[2], &at)) tc_spans_append(query->spans, (TcSpan){.begin = at.z, .end = at.z, .s0 = at.s, .id = i});
+  double edge[3];
+  if (!crosses(&p[0], &p[1], &p[2], edge)) return;
+  TcSpan span = {.id = i};
+  tc_crossing(&p[0], &p[1], &p[2], edge[0], edge[1], edge[2], &span.begin, &span.s0);
+  span.end = span.begin;
+  tc_spans_append(query->spans, span);
 }
 
 /* A ray crosses none or exactly two of a cell's faces. */
@@ -53,7 +56,12 @@ bool tc_cross_cell(const TetcastVolume *volume, const TcRay *ray, uint32_t cell,
   TcWalk found[2];
   for (int k = 0; k < 4; ++k) p[k] = tc_project(volume, ray, vertex[k]);
   int count = 0;
-  for (int k = 0; k < 4 && count < 2; ++k) count += crosses(&p[k], &p[(k + 1) & 3], &p[(k + 2) & 3], &found[count]);
+  for (int k = 0; k < 4 && count < 2; ++k) {
+    const TcPoint *v[3] = {&p[k], &p[(k + 1) & 3], &p[(k + 2) & 3]};
+    if (!crosses(v[0], v[1], v[2], found[count].edge)) continue;
+    for (int j = 0; j < 3; ++j) found[count].v[j] = *v[j];
+    tc_walk_cross(&found[count++]);
+  }
   if (count < 2) return false;
   const int first = found[1].z < found[0].z;
   face[0] = found[first];

@@ -148,6 +148,42 @@ static void homogeneous_cube(void **state) {
   }
 }
 
+/* Through more cells than are summed up at a time; and what lies behind an optical depth of 746 can't be seen, however bright it is,
+ * whether the ray goes on or not. */
+static void long_rays(void **state) {
+  (void)state;
+  World world;
+  world_begin(&world, 30, 0.5, 1, TETCAST_TRAVERSAL_SHELL, 2);
+  const int64_t count = world.cube.vertex_count;
+  const TetcastCamera camera = above(1);
+  double *extinction = constant(count, 4), *emission = constant(count, 2.5);
+  set_one(&world, extinction, emission, TETCAST_POINT);
+  TetcastFrame *frame = shoot(&world, &camera, all_channels, 1);
+  for (int p = 0; p < PIXELS; ++p) {
+    if (!meets(p)) continue;
+    close_to(channel(frame, TETCAST_CHANNEL_RADIANCE)[p], -2.5 * expm1(-4) / 4, 1e-13, "radiance", p);
+    close_to(channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH)[p], 4, 1e-13, "optical depth", p);
+    close_to(channel(frame, TETCAST_CHANNEL_PATH_LENGTH)[p], 1, 1e-15, "path length", p);
+  }
+  tetcast_frame_destroy(&frame);
+  for (int64_t i = 0; i < count; ++i) {
+    extinction[i] = 1000;
+    emission[i] = world.cube.vertices[3 * i + 2] < 0.2 ? 1e300 : 0;
+  }
+  set_one(&world, extinction, emission, TETCAST_POINT);
+  frame = shoot(&world, &camera, all_channels, 1);
+  TetcastFrame *shorter = shoot(&world, &camera, TETCAST_CHANNEL_RADIANCE, 1);
+  for (int p = 0; p < PIXELS; ++p) {
+    assert_true(channel(frame, TETCAST_CHANNEL_RADIANCE)[p] == 0 && channel(shorter, TETCAST_CHANNEL_RADIANCE)[p] == 0);
+    if (meets(p)) close_to(channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH)[p], 1000, 1e-13, "optical depth", p);
+  }
+  tetcast_frame_destroy(&frame);
+  tetcast_frame_destroy(&shorter);
+  free(extinction);
+  free(emission);
+  world_end(&world);
+}
+
 /* Either of the two alone. The other's channels say so. */
 static void one_of_the_two(void **state) {
   (void)state;
@@ -573,7 +609,7 @@ static void memory_may_run_out(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(homogeneous_cube),        cmocka_unit_test(one_of_the_two), cmocka_unit_test(linear_fields_are_exact),
+    cmocka_unit_test(homogeneous_cube),        cmocka_unit_test(long_rays), cmocka_unit_test(one_of_the_two), cmocka_unit_test(linear_fields_are_exact),
     cmocka_unit_test(groups_are_single_runs),  cmocka_unit_test(traversals_agree), cmocka_unit_test(units_scale_exactly),
     cmocka_unit_test(extremes),                cmocka_unit_test(emission_is_linear), cmocka_unit_test(colors),
     cmocka_unit_test(bad_coefficients_are_refused), cmocka_unit_test(either_replaces_the_other), cmocka_unit_test(memory_may_run_out)};
