@@ -44,10 +44,10 @@ typedef struct TetcastCoefficientsDesc {
 
 TETCAST_API TetcastCoefficientsDesc tetcast_coefficients_desc_default(void);
 
-/* Sets the coefficients, in place of former ones or of a transfer function; they are copied, and the volume's own field is not used. To a
- * group, cells that touch a NaN or an infinite value of it are transparent and dark. A negative extinction is
- * TETCAST_ERROR_DATA, and the message says where; a field that isn't of the volume's mesh TETCAST_ERROR_ARGUMENT. Must not run while
- * this scene renders. On error the scene keeps what it had. */
+/* Sets the coefficients, in place of former ones or of a transfer function; they are copied, and the volume's own field is not used.
+ * Values of magnitude above 2^1022 count as that. To a group, cells that touch a NaN or an infinite value of it are transparent and dark. A
+ * negative extinction is TETCAST_ERROR_DATA, and the message says where; a field that isn't of the volume's mesh is
+ * TETCAST_ERROR_ARGUMENT. Must not run while this scene renders. On error the scene keeps what it had. */
 TETCAST_API TetcastStatus tetcast_scene_set_coefficients(TetcastScene *scene, const TetcastCoefficientsDesc *desc);
 
 /* Number of groups of the coefficients, 0 without. */

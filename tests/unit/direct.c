@@ -405,6 +405,65 @@ static void extremes(void **state) {
   }
 }
 
+/* As bright, and as dense, as a double can be, everywhere: values above 2^1022 count as that. */
+static void largest_values(void **state) {
+  (void)state;
+  World world;
+  world_begin(&world, 5, 0.6, 1, TETCAST_TRAVERSAL_SHELL, 2);
+  double *values = constant(world.cube.vertex_count, DBL_MAX);
+  const TetcastCamera camera = above(1);
+  for (int absorbs = 0; absorbs < 2; ++absorbs) {
+    set_one(&world, absorbs ? values : NULL, values, TETCAST_POINT);
+    TetcastFrame *frame = shoot(&world, &camera, all_channels, 1);
+    for (int p = 0; p < PIXELS; ++p) {
+      const double wanted = !meets(p) ? 0 : absorbs ? 0x1p1022 / 0x1p1016 : 0x1p1022;
+      close_to(channel(frame, TETCAST_CHANNEL_RADIANCE)[p], wanted, 4e-15, "radiance", p);
+    }
+    tetcast_frame_destroy(&frame);
+  }
+  free(values);
+  world_end(&world);
+}
+
+/* A vertex whose extinction or emission is not a number, or infinite: the cells at it are left out, as cells of nothing are. */
+static void values_that_are_not_finite(void **state) {
+  (void)state;
+  static const double bad[] = {NAN, INFINITY, -INFINITY};
+  World world;
+  world_begin(&world, 5, 0.6, 1, TETCAST_TRAVERSAL_SHELL, 2);
+  const int64_t points = world.cube.vertex_count, cells = world.cube.cell_count, vertex = 100;
+  double *k = constant(points, 2), *j = constant(points, 3), *cell_k = constant(cells, 2), *cell_j = constant(cells, 3);
+  for (int64_t i = 0; i < 4 * cells; ++i) {
+    if (world.cube.cells[i] == vertex) cell_k[i / 4] = cell_j[i / 4] = 0;
+  }
+  const TetcastCamera camera = above(1);
+  set_one(&world, cell_k, cell_j, TETCAST_CELL);
+  TetcastFrame *wanted = shoot(&world, &camera, all_channels, 1);
+  int holes = 0;
+  for (int i = 0; i < 6; ++i) {
+    double *values = i % 2 ? k : j;
+    const double kept = values[vertex];
+    values[vertex] = bad[i / 2];
+    set_one(&world, k, j, TETCAST_POINT);
+    values[vertex] = kept;
+    TetcastFrame *frame = shoot(&world, &camera, all_channels, 1);
+    for (int bit = TETCAST_CHANNEL_RADIANCE; bit <= TETCAST_CHANNEL_PATH_LENGTH; bit *= 2) {
+      for (int p = 0; p < PIXELS; ++p) {
+        close_to(channel(frame, (TetcastChannel)bit)[p], channel(wanted, (TetcastChannel)bit)[p], 1e-13, "a hole", p);
+      }
+    }
+    for (int p = 0; p < PIXELS; ++p) holes += meets(p) && channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH)[p] < 1.99;
+    tetcast_frame_destroy(&frame);
+  }
+  assert_true(holes > 6);
+  tetcast_frame_destroy(&wanted);
+  free(k);
+  free(j);
+  free(cell_k);
+  free(cell_j);
+  world_end(&world);
+}
+
 /* A negative emission takes away what the same positive one brings. */
 static void emission_is_linear(void **state) {
   (void)state;
@@ -611,7 +670,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(homogeneous_cube),        cmocka_unit_test(long_rays), cmocka_unit_test(one_of_the_two), cmocka_unit_test(linear_fields_are_exact),
     cmocka_unit_test(groups_are_single_runs),  cmocka_unit_test(traversals_agree), cmocka_unit_test(units_scale_exactly),
-    cmocka_unit_test(extremes),                cmocka_unit_test(emission_is_linear), cmocka_unit_test(colors),
+    cmocka_unit_test(extremes), cmocka_unit_test(largest_values), cmocka_unit_test(values_that_are_not_finite),
+    cmocka_unit_test(emission_is_linear), cmocka_unit_test(colors),
     cmocka_unit_test(bad_coefficients_are_refused), cmocka_unit_test(either_replaces_the_other), cmocka_unit_test(memory_may_run_out)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
