@@ -33,6 +33,8 @@ static int check(Run *run) {
   if ((options->stats && !cli_file_check(options->stats)) ||
       (options->save_scene && !cli_file_check(options->save_scene)))
     return CLI_FAILED;
+  if (render_options_given(options, OPTION_EMISSION) && !render_options_given(options, OPTION_BACKGROUND))
+    options->background[0] = options->background[1] = options->background[2] = 0; /* what shines is seen against the dark */
   if (options->source >> OPTION_BACKGROUND & 1 && render_options_floating(options)) /* on the command line, that is */
     cli_warning("--background has no effect: floating-point pixels hold the picture without background");
   return cli_verdict(CLI_DONE);
@@ -46,6 +48,7 @@ static int check_image(Run *run) {
   run->image_desc = run->image->image_desc_default();
   run->image_desc.pixel_type = (TetcastPixelType)run->options.pixel_type;
   memcpy(run->image_desc.background, run->options.background, sizeof run->options.background);
+  run->image_desc.channels_only = render_options_given(&run->options, OPTION_GROUPS) && run->options.groups;
   cli_interrupt_hold(true); /* the check puts a file in a folder for a moment */
   const TetcastStatus status = run->image->image_check(run->stage.context, run->options.output, &run->image_desc);
   cli_interrupt_hold(false);
@@ -124,8 +127,9 @@ int render_create_frame(Run *run) {
   desc.width = (int64_t)options->size[0];
   desc.height = (int64_t)options->size[1];
   desc.type = options->pixel_type == TETCAST_PIXEL_DOUBLE ? TETCAST_TYPE_FLOAT64 : TETCAST_TYPE_FLOAT32;
-  if (options->channels)
-    desc.channels = render_option_channels(options->channels);
+  desc.channels = render_options_channels(options);
+  if (tetcast_scene_groups(run->stage.scene) > 0)
+    desc.groups = tetcast_scene_groups(run->stage.scene);
   const TetcastStatus status = tetcast_frame_create(run->stage.context, &desc, &run->frame);
   return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }
@@ -159,8 +163,25 @@ int render_frame(Run *run) {
   return cli_verdict(CLI_DONE);
 }
 
+/* Radiance has no scale of its own: what an integer pixel makes of it may be all white or all black. */
+static void check_brightness(const Run *run) {
+  if (!render_options_given(&run->options, OPTION_EMISSION) || render_options_floating(&run->options))
+    return;
+  const float *pixels = tetcast_frame_pixels(run->frame);
+  const int64_t count = tetcast_frame_width(run->frame) * tetcast_frame_height(run->frame);
+  float brightest = 0;
+  for (int64_t i = 0; i < 4 * count; i++)
+    if (i % 4 < 3 && pixels[i] > brightest)
+      brightest = pixels[i];
+  if (brightest > 1)
+    cli_warning("radiance up to %g: above 1 all is white in integer pixels; .exr and .tif hold it as it is", (double)brightest);
+  else if (brightest > 0 && brightest < 1.0f / 255)
+    cli_warning("radiance up to %g: below 1/255 all is black in integer pixels; .exr and .tif hold it as it is", (double)brightest);
+}
+
 int render_write_image(Run *run, const char *path) {
   const Stage *stage = &run->stage;
+  check_brightness(run);
   render_await_image(run);
   const double start = cli_seconds();
   const TetcastStatus status = run->image->image_write(stage->context, path, run->frame, &run->image_desc);

@@ -24,6 +24,9 @@ typedef enum OptionId {
   OPTION_PRESET,
   OPTION_RANGE,
   OPTION_OPACITY_MODEL,
+  OPTION_EXTINCTION,
+  OPTION_EMISSION,
+  OPTION_GROUPS,
   OPTION_EYE,
   OPTION_TARGET,
   OPTION_UP,
@@ -59,13 +62,13 @@ typedef enum RangeKind { RANGE_DEFAULT, RANGE_FIXED, RANGE_STEP, RANGE_SERIES } 
 typedef struct RenderOptions {
   RenderCommand command;
   /* NULL unless given */
-  char *input, *output, *array, *block, *time, *transfer, *preset, *integrator, *channels, *stats, *scene, *save_scene;
+  char *input, *output, *array, *block, *time, *transfer, *preset, *extinction, *emission, *integrator, *channels, *stats, *scene, *save_scene;
   json_t *transfer_object; /* of a scene file; instead of transfer */
   double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], tolerance, threads, repeat;
   double merge_tolerance; /* negative unless given */
   RangeKind range_kind;   /* RANGE_FIXED: options->range */
   int opacity_model, traversal, isa, pixel_type; /* values of the library's enumerations */
-  int cell_to_point, quiet, strict, resume, refine, no_plots;
+  int cell_to_point, quiet, strict, resume, refine, no_plots, groups;
   uint64_t given;  /* bit 1 << OptionId: has a value from command line or scene file */
   uint64_t source; /* the same for the source being read alone */
 } RenderOptions;
@@ -109,8 +112,16 @@ static inline const char *render_options_preset(const RenderOptions *options) {
   return render_options_given(options, OPTION_PRESET) ? options->preset : "viridis";
 }
 
+/* Whether extinction or emission come from arrays of their own. */
+static inline bool render_options_direct(const RenderOptions *options) {
+  return render_options_given(options, OPTION_EXTINCTION) || render_options_given(options, OPTION_EMISSION);
+}
+
 /* The TetcastChannel bits of a list as --channels has it, 0: there is something else in it. */
 uint32_t render_option_channels(const char *text);
+
+/* Those of the frame; --groups alone means the radiance, or the transmittance when nothing is emitted. */
+uint32_t render_options_channels(const RenderOptions *options);
 
 /* Whether the pixels of options->output will be floating-point, which hold no background. */
 bool render_options_floating(const RenderOptions *options);

@@ -128,7 +128,12 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
   /* Names come from the file system and the data, and JSON takes UTF-8 only. */
   int failed = json_object_set_new(scene, "input", json_string(input));
   failed |= json_object_set_new(scene, "output", json_string(cli_path_name(options->output)));
-  failed |= json_object_set_new(scene, "array", json_string(array));
+  if (render_options_given(options, OPTION_EXTINCTION))
+    failed |= json_object_set_new(scene, "extinction", json_string(options->extinction));
+  if (render_options_given(options, OPTION_EMISSION))
+    failed |= json_object_set_new(scene, "emission", json_string(options->emission));
+  if (array)
+    failed |= json_object_set_new(scene, "array", json_string(array));
   if (options->block)
     failed |= json_object_set_new(scene, "block", json_string(options->block));
   if (options->time) /* "t=0.5", "all" */
@@ -145,10 +150,12 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
   }
   if (transfer_function) {
     json_object_set_new(scene, "transfer", transfer_object(transfer_function));
-  } else {
+  } else if (!render_options_direct(options)) {
     json_object_set_new(scene, "preset", json_string(render_options_preset(options)));
     json_object_set_new(scene, "range", json_string("step"));
   }
+  if (render_options_given(options, OPTION_GROUPS))
+    json_object_set_new(scene, "groups", json_boolean(options->groups));
   json_object_set_new(scene, "camera", camera_object(camera));
   json_object_set_new(scene, "size", size_array(options->size));
   json_object_set_new(scene, "samples", json_integer((json_int_t)options->samples));

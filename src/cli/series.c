@@ -173,7 +173,7 @@ static int find_scene(Series *series) {
   const RenderOptions *options = &series->run->options;
   const RangeKind kind = render_options_range(options);
   int code = CLI_DONE;
-  if (!stage->transfer_function && kind != RANGE_STEP) {
+  if (!stage->transfer_function && kind != RANGE_STEP && !render_options_direct(options)) {
     if (kind != RANGE_FIXED)
       code = find_range(series);
     if (code == CLI_DONE)

@@ -24,8 +24,8 @@ int stage_begin(Stage *stage, const RenderOptions *options) {
   return cli_verdict(CLI_DONE);
 }
 
-/* The dataset and its field; `step` NULL: the one that the options name. */
-static TetcastStatus read_field(Stage *stage, const RenderOptions *options, const int64_t *step) {
+/* The dataset and its field or coefficients; `step` NULL: the one that the options name. */
+static int read_field(Stage *stage, const RenderOptions *options, const int64_t *step) {
   const double start = cli_seconds();
   const CliVtk *vtk = cli_vtk();
   const char *array = NULL;
@@ -39,23 +39,27 @@ static TetcastStatus read_field(Stage *stage, const RenderOptions *options, cons
   }
   TetcastStatus status = vtk->dataset_read(stage->context, options->input, &desc, &stage->dataset);
   if (status == TETCAST_OK)
-    status = vtk->dataset_field(stage->dataset, stage->array ? stage->array : options->array, &stage->field, &array);
-  if (status == TETCAST_OK) {
     stage->step = vtk->dataset_step(stage->dataset);
-    if (!stage->array)
+  if (status == TETCAST_OK && render_options_direct(options)) {
+    if (!coefficients_read(stage->dataset, options, &stage->coefficients))
+      return CLI_FAILED;
+  } else if (status == TETCAST_OK) {
+    status = vtk->dataset_field(stage->dataset, stage->array ? stage->array : options->array, &stage->field, &array);
+    if (status == TETCAST_OK && !stage->array)
       stage->array = cli_duplicate(array);
   }
   stage->read_seconds = cli_seconds() - start;
-  return status;
+  return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }
 
 static int read_dataset(Stage *stage, const RenderOptions *options, const int64_t *step) {
   if (!cli_vtk())
     return CLI_FAILED;
-  TetcastStatus status = read_field(stage, options, step);
+  const int code = read_field(stage, options, step);
+  if (code != CLI_DONE)
+    return code;
   const double start = cli_seconds();
-  if (status == TETCAST_OK)
-    status = cli_vtk()->dataset_mesh(stage->dataset, &stage->mesh);
+  const TetcastStatus status = cli_vtk()->dataset_mesh(stage->dataset, &stage->mesh);
   stage->read_seconds += cli_seconds() - start;
   return status == TETCAST_OK ? cli_verdict(CLI_DONE) : cli_failed(status);
 }
@@ -87,9 +91,9 @@ static double mean_of(const TetcastField *field) {
 int stage_read_values(Stage *stage, const RenderOptions *options, int64_t step, StageValues *values) {
   if (!stage->field || stage->step != step) {
     stage_drop_dataset(stage);
-    const TetcastStatus status = read_field(stage, options, &step);
-    if (status != TETCAST_OK)
-      return cli_failed(status);
+    const int code = read_field(stage, options, &step);
+    if (code != CLI_DONE)
+      return code;
   }
   tetcast_field_range(stage->field, values->range, &values->nonfinite);
   values->count = tetcast_field_values(stage->field).count;
@@ -131,7 +135,7 @@ static TetcastStatus create_volume(Stage *stage, const RenderOptions *options) {
   return status;
 }
 
-static TetcastStatus create_scene(Stage *stage, const RenderOptions *options, const double *range) {
+static TetcastStatus set_transfer_function(Stage *stage, const RenderOptions *options, const double *range) {
   TetcastStatus status = TETCAST_OK;
   if (!stage->transfer_function) {
     if (render_options_range(options) == RANGE_FIXED)
@@ -139,8 +143,6 @@ static TetcastStatus create_scene(Stage *stage, const RenderOptions *options, co
     status = tetcast_transfer_function_create_preset(stage->context, stage->volume, render_options_preset(options), range[0],
                                                      range[1], &stage->transfer_function);
   }
-  if (status == TETCAST_OK && !stage->scene)
-    status = tetcast_scene_create(stage->context, stage->volume, &stage->scene);
   if (status == TETCAST_OK)
     status = tetcast_scene_set_transfer_function(stage->scene, stage->transfer_function);
   return status;
@@ -150,8 +152,11 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
   const double start = cli_seconds();
   cli_interrupt_hold(true);
   TetcastStatus status = create_volume(stage, options);
+  if (status == TETCAST_OK && !stage->scene)
+    status = tetcast_scene_create(stage->context, stage->volume, &stage->scene);
   if (status == TETCAST_OK)
-    status = tetcast_volume_set_field(stage->volume, stage->field);
+    status = stage->field ? tetcast_volume_set_field(stage->volume, stage->field)
+                          : coefficients_set(stage->scene, options, &stage->coefficients);
   if (status != TETCAST_OK)
     return cli_failed(status);
   tetcast_volume_info(stage->volume, &stage->info);
@@ -164,13 +169,14 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
 
 int stage_shade(Stage *stage, const RenderOptions *options, const double range[2]) {
   const double start = cli_seconds();
-  const TetcastStatus status = create_scene(stage, options, range);
+  const TetcastStatus status = render_options_direct(options) ? TETCAST_OK : set_transfer_function(stage, options, range);
   stage->prepare_seconds += cli_seconds() - start;
   return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }
 
 void stage_drop_dataset(Stage *stage) {
   tetcast_field_destroy(&stage->field);
+  coefficients_release(&stage->coefficients);
   tetcast_mesh_destroy(&stage->mesh);
   if (stage->dataset)
     cli_vtk()->dataset_destroy(&stage->dataset);

@@ -6,19 +6,21 @@
 #include <tetcast/tetcast.h>
 
 #include "adapter.h"
+#include "coefficients.h"
 #include "render_options.h"
 
 typedef struct Stage {
   TetcastContext *context;
-  TetcastDataset *dataset; /* these three only until stage_drop_dataset() */
+  TetcastDataset *dataset; /* these four only until stage_drop_dataset() */
   TetcastMesh *mesh;
-  TetcastField *field;
+  TetcastField *field;        /* NULL: coefficients instead */
+  Coefficients coefficients;
   TetcastVolume *volume;
   TetcastVolumeInfo info;
   TetcastTransferFunction *transfer_function;
   TetcastScene *scene;
   TetcastCamera camera;
-  char *array; /* what was read, as --array would name it */
+  char *array; /* what was read, as --array would name it; NULL: coefficients */
   double read_seconds, prepare_seconds;
   /* for series */
   int64_t step;         /* that was read */
@@ -42,10 +44,10 @@ typedef struct StageValues {
 /* Reads a step for its values alone; stage->mesh is not there then. */
 int stage_read_values(Stage *stage, const RenderOptions *options, int64_t step, StageValues *values);
 
-/* Prepares the volume and completes the camera. Holds interruptions from here on. */
+/* Prepares the volume, with its field or the scene's coefficients, and completes the camera. Holds interruptions from here on. */
 int stage_prepare(Stage *stage, const RenderOptions *options);
 
-/* Makes the transfer function, if there is none yet, for the range that the options state, or `range`, and the scene. */
+/* Gives the scene its transfer function, if it has no coefficients; if there is none yet, for the range that the options state, or `range`. */
 int stage_shade(Stage *stage, const RenderOptions *options, const double range[2]);
 
 /* Gives back the memory of what was read; the scene does not need it. */
