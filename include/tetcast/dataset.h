@@ -28,9 +28,10 @@ typedef struct TetcastDatasetDesc {
   double time;       /* the step at this time instead; NaN: none asked for */
   double merge_tolerance; /* negative: only points of different pieces are merged, where they coincide exactly. Else all points no
                              further than this apart, in the file's unit of length; 0: all that coincide exactly */
+  int subdivision;        /* what each edge of a curved cell is cut into, to TETCAST_MAX_SUBDIVISION; 0: as its nodes lie */
 } TetcastDatasetDesc;
 
-/* All blocks, the first step, no tolerance. */
+/* All blocks, the first step, no tolerance, curved cells cut as their nodes lie. */
 TETCAST_API TetcastDatasetDesc tetcast_dataset_desc_default(void);
 
 /* Format i = 0, 1, … of those that can be read: what it is called, and the usual ends of its files' names, e.g. ".ex2 .exo .e".

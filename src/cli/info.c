@@ -24,6 +24,7 @@ static const char help_text[] =
     "      --time STEP          of a series this step, from 0, the default; -1 is the last; or t=TIME\n"
     "      --merge-tolerance D  points no further apart become one; default: only those of different pieces, if they\n"
     "                           coincide\n"
+    "      --subdivide N        cuts each edge of a curved cell into N; default: as its nodes lie\n"
     "      --formats            lists the formats that can be read\n"
     "  -h, --help               this text\n"
     "\n"
@@ -243,6 +244,7 @@ static int print_formats(void) {
 typedef struct Request {
   const char *path, *block, *time;
   double merge_tolerance;
+  int subdivide;
   bool json, formats;
 } Request;
 
@@ -252,17 +254,24 @@ static int parse(int argc, char **argv, Request *request) {
                                         {"block", required_argument, NULL, 'b'},
                                         {"time", required_argument, NULL, 't'},
                                         {"merge-tolerance", required_argument, NULL, 'm'},
+                                        {"subdivide", required_argument, NULL, 's'},
                                         {"help", no_argument, NULL, 'h'},
                                         {NULL, 0, NULL, 0}};
   *request = (Request){.merge_tolerance = -1};
   TetcastDatasetDesc desc;
   optind = 0;
+  double number;
   int code;
   while ((code = getopt_long(argc, argv, ":h", words, NULL)) != -1) {
     switch (code) {
     case 'h':
       fputs(help_text, stdout);
       return cli_finish_output();
+    case 's':
+      if (!cli_parse_number(optarg, &number) || !(number >= 0 && number <= TETCAST_MAX_SUBDIVISION) || number != (int)number)
+        return cli_usage_error("info", "--subdivide %s: expected a whole number from 1 to %d, or 0: as the nodes lie", optarg, TETCAST_MAX_SUBDIVISION);
+      request->subdivide = (int)number;
+      break;
     case 'j':
       request->json = true;
       break;
@@ -311,6 +320,7 @@ int tetcast_cli_info(int argc, char **argv) {
   if (info.vtk) {
     info.desc = info.vtk->dataset_desc_default();
     render_option_dataset(request.block, request.time, request.merge_tolerance, &info.desc);
+    info.desc.subdivision = request.subdivide;
     const TetcastStatus status = get_info(&info, context);
     if (status == TETCAST_OK) {
       (request.json ? info_print_json : print_text)(&info);

@@ -19,6 +19,7 @@ typedef enum OptionId {
   OPTION_BLOCK,
   OPTION_TIME,
   OPTION_MERGE_TOLERANCE,
+  OPTION_SUBDIVIDE,
   OPTION_TRANSFER,
   OPTION_PRESET,
   OPTION_RANGE,
@@ -57,6 +58,7 @@ typedef struct RenderOptions {
   json_t *transfer_object; /* of a scene file; instead of transfer */
   double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], tolerance, threads, repeat;
   double merge_tolerance; /* negative unless given */
+  double subdivide;
   int opacity_model, traversal, isa, pixel_type; /* values of the library's enumerations */
   int quiet, refine, no_plots;
   uint64_t given;  /* bit 1 << OptionId: has a value from command line or scene file */

@@ -30,6 +30,7 @@ int stage_read(Stage *stage, const RenderOptions *options) {
   const char *array = NULL;
   TetcastDatasetDesc desc = vtk->dataset_desc_default();
   render_option_dataset(options->block, options->time, options->merge_tolerance, &desc);
+  desc.subdivision = (int)options->subdivide;
   TetcastStatus status = vtk->dataset_read(stage->context, options->input, &desc, &stage->dataset);
   if (status == TETCAST_OK)
     status = vtk->dataset_field(stage->dataset, options->array, &stage->field, &array);

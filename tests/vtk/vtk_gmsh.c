@@ -113,6 +113,26 @@ static void test_variants(void **state) {
   }
 }
 
+/* Subdivision is of curved cells, and neither too fine nor negative. */
+static void test_subdivision(void **state) {
+  Fixture *fixture = *state;
+  static const int wrong[] = {-1, TETCAST_MAX_SUBDIVISION + 1};
+  GmshFile to = gmsh_open(in_folder(fixture, "a.msh"), 2, GMSH_TEXT);
+  write_mesh(&to, false, 0);
+  fclose(to.file);
+  TetcastDatasetDesc desc = tetcast_dataset_desc_default();
+  for (int i = 0; i < 2; ++i) {
+    TetcastDataset *dataset;
+    desc.subdivision = wrong[i];
+    assert_int_equal(tetcast_dataset_read(fixture->context, fixture->path, &desc, &dataset), TETCAST_ERROR_ARGUMENT);
+    assert_null(dataset);
+  }
+  desc.subdivision = 3;
+  TetcastDataset *dataset = read_with(fixture, fixture->path, desc);
+  assert_int_equal(tetcast_dataset_cut(dataset).curved, 0);
+  tetcast_dataset_destroy(&dataset);
+}
+
 /* The ends of the edges, and corners of the faces, that Gmsh has nodes in the middle of, in its order. */
 static const struct {
   int type, corners, edges, faces;
@@ -218,6 +238,6 @@ static void test_errors(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {TEST(test_variants), TEST(test_second_order), TEST(test_errors)};
+  const struct CMUnitTest tests[] = {TEST(test_variants), TEST(test_subdivision), TEST(test_second_order), TEST(test_errors)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
