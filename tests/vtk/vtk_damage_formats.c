@@ -154,7 +154,7 @@ static void test_gmsh(void **state) {
       gmsh_data(&to, "ElementData", "b", 1, 3, 2, element, 0, values);
       gmsh_data(&to, "ElementNodeData", "c", 0, 1, 2, element, 4, values);
       fclose(to.file);
-      damage(fixture, "g.msh", "g.msh", 100);
+      damage(fixture, "g.msh", "g.msh", 40);
     }
   }
 }
