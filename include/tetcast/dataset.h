@@ -32,9 +32,10 @@ typedef struct TetcastDatasetDesc {
                            * lets one choose (VTK XML, Exodus); NULL: all */
   bool cell_to_point;     /* fields of cell arrays are of points: at each the plain mean over the file's cells that use it, component by
                            * component; only volumetric cells count, and not those whose value is NaN or infinite */
+  int subdivision;        /* what each edge of a curved cell is cut into, to TETCAST_MAX_SUBDIVISION; 0: as its nodes lie */
 } TetcastDatasetDesc;
 
-/* All blocks, the first step, no tolerance. */
+/* All blocks, the first step, no tolerance, curved cells cut as their nodes lie. */
 TETCAST_API TetcastDatasetDesc tetcast_dataset_desc_default(void);
 
 /* Format i = 0, 1, … of those that can be read: what it is called, and the usual ends of its files' names, e.g. ".ex2 .exo .e".

@@ -26,6 +26,7 @@ static const char help_text[] =
     "                           coincide\n"
     "      --cell-to-point      ranges of cell arrays are those of their averages at the points\n"
     "      --strict             fails with the reader's first warning, or with what of the list is a defect\n"
+    "      --subdivide N        cuts each edge of a curved cell into N; default: as its nodes lie\n"
     "      --formats            lists the formats that can be read\n"
     "  -h, --help               this text\n"
     "\n"
@@ -279,6 +280,7 @@ typedef struct Request {
   const char *path, *block, *time;
   double merge_tolerance;
   bool json, formats, strict, cell_to_point;
+  int subdivide;
 } Request;
 
 static int parse(int argc, char **argv, Request *request) {
@@ -289,17 +291,24 @@ static int parse(int argc, char **argv, Request *request) {
                                         {"merge-tolerance", required_argument, NULL, 'm'},
                                         {"strict", no_argument, NULL, 'S'},
                                         {"cell-to-point", no_argument, NULL, 'c'},
+                                        {"subdivide", required_argument, NULL, 's'},
                                         {"help", no_argument, NULL, 'h'},
                                         {NULL, 0, NULL, 0}};
   *request = (Request){.merge_tolerance = -1};
   TetcastDatasetDesc desc;
   optind = 0;
+  double number;
   int code;
   while ((code = getopt_long(argc, argv, ":h", words, NULL)) != -1) {
     switch (code) {
     case 'h':
       fputs(help_text, stdout);
       return cli_finish_output();
+    case 's':
+      if (!cli_parse_number(optarg, &number) || !(number >= 0 && number <= TETCAST_MAX_SUBDIVISION) || number != (int)number)
+        return cli_usage_error("info", "--subdivide %s: expected a whole number from 1 to %d, or 0: as the nodes lie", optarg, TETCAST_MAX_SUBDIVISION);
+      request->subdivide = (int)number;
+      break;
     case 'j':
       request->json = true;
       break;
@@ -356,6 +365,7 @@ int tetcast_cli_info(int argc, char **argv) {
     info.desc = info.vtk->dataset_desc_default();
     render_option_dataset(request.block, request.time, request.merge_tolerance, &info.desc);
     info.desc.cell_to_point = request.cell_to_point;
+    info.desc.subdivision = request.subdivide;
     const TetcastStatus status = get_info(&info, context);
     if (status == TETCAST_OK && request.strict)
       report_defects(&info);

@@ -51,6 +51,8 @@ static const struct {
     [OPTION_MERGE_TOLERANCE] = {"merge-tolerance", KIND_NUMBERS, AT(merge_tolerance), 1, 1, 0, DBL_MAX,
                                 .form = "expected a distance, 0 or above"},
     [OPTION_CELL_TO_POINT] = {"cell-to-point", KIND_FLAG, AT(cell_to_point), .form = "expected true or false"},
+    [OPTION_SUBDIVIDE] = {"subdivide", KIND_INTEGERS, AT(subdivide), 1, 1, 0, TETCAST_MAX_SUBDIVISION,
+                          .form = "expected a whole number from 1 to 16, or 0: as the nodes lie"},
     [OPTION_TRANSFER] = {"transfer", KIND_PATH, AT(transfer), .excludes = BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | DIRECT,
                          .form = "expected a transfer function or the path of one"},
     [OPTION_PRESET] = {"preset", KIND_TEXT, AT(preset), .excludes = BIT(OPTION_TRANSFER) | DIRECT, .form = "expected a name"},

@@ -20,6 +20,7 @@ typedef enum OptionId {
   OPTION_TIME,
   OPTION_MERGE_TOLERANCE,
   OPTION_CELL_TO_POINT,
+  OPTION_SUBDIVIDE,
   OPTION_TRANSFER,
   OPTION_PRESET,
   OPTION_RANGE,
@@ -67,6 +68,7 @@ typedef struct RenderOptions {
   double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], tolerance, threads, repeat;
   double merge_tolerance; /* negative unless given */
   RangeKind range_kind;   /* RANGE_FIXED: options->range */
+  double subdivide;
   int opacity_model, traversal, isa, pixel_type; /* values of the library's enumerations */
   int cell_to_point, quiet, strict, resume, refine, no_plots, groups;
   uint64_t given;  /* bit 1 << OptionId: has a value from command line or scene file */

@@ -31,6 +31,7 @@ static int read_field(Stage *stage, const RenderOptions *options, const int64_t 
   const char *array = NULL;
   TetcastDatasetDesc desc = vtk->dataset_desc_default();
   render_option_dataset(options->block, options->time, options->merge_tolerance, &desc);
+  desc.subdivision = (int)options->subdivide;
   desc.cell_to_point = options->cell_to_point;
   desc.only = stage->array; /* of the step before */
   if (step) {

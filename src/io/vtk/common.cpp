@@ -121,6 +121,7 @@ std::string file_kind(const std::string &head) {
   if (first == std::string::npos) return "";
   if (head[first] == '<') return head.find("<VTKFile") == std::string::npos ? "" : "VTKFile " + xml_type(head);
   if (head[first] == '{') return "JSON";
+  if (begins_with(head, "$MeshFormat") || (begins_with(head, "$Comments") && head.find("\n$MeshFormat") != std::string::npos)) return "Gmsh";
   if (begins_with(head, "# vtk DataFile")) return "vtk " + legacy_type(head);
   if (begins_with(head, "\x89HDF")) { // the names of what is at the top come early
     const auto has = [&](const char *name) { return head.find(name) != std::string::npos; };
@@ -147,6 +148,18 @@ bool is_surface(const std::string &kind) {
     if (kind == surface) return true;
   }
   return false;
+}
+
+bool parse_number(const char *first, const char *last, double *value) {
+  if (first != last && *first == '+') ++first;
+  const auto [end, error] = std::from_chars(first, last, *value);
+  if (end != last || first == last) return false;
+  // Beyond double's range: tiny is zero, huge is an infinity that is refused later.
+  if (error == std::errc::result_out_of_range) {
+    const std::string text(first, last);
+    *value = text.find("e-") != std::string::npos || text.find("E-") != std::string::npos ? 0 : HUGE_VAL;
+  }
+  return error != std::errc::invalid_argument;
 }
 
 double number_of(const std::string &text) {

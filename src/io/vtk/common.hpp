@@ -82,6 +82,7 @@ int64_t file_size(const char *path); // 0 if there is no such file
 // "" …
 std::string file_kind(const std::string &head);
 bool is_surface(const std::string &kind);
+bool parse_number(const char *first, const char *last, double *value); // decimal, the same in every locale; false: is none
 double number_of(const std::string &text); // decimal, the same in every locale; NaN: is none
 bool has_extension(const char *path, const char *extension); // ".vtu", in any case of letters
 

@@ -101,6 +101,7 @@ static void read_dataset(TetcastContext *context, const char *path, const Tetcas
   {
     const Capture capture; // cutting may complain as well
     CutOptions options;
+    options.subdivision = desc.subdivision;
     options.threads = tetcast_context_threads(context);
     make_tetrahedra(path, grid, dataset->points, options, &dataset->tetrahedra);
   }
@@ -130,6 +131,10 @@ TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, co
   if (std::isinf(all.time) || !std::isfinite(all.merge_tolerance)) {
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "tetcast_dataset_read: time %g or merge_tolerance %g is not a finite number",
                                  all.time, all.merge_tolerance);
+  }
+  if (all.subdivision < 0 || all.subdivision > TETCAST_MAX_SUBDIVISION) {
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "tetcast_dataset_read: subdivision %d is not from 0 to %d", all.subdivision,
+                                 TETCAST_MAX_SUBDIVISION);
   }
   return fence(context, path, [&] {
     auto result = std::make_unique<TetcastDataset>();

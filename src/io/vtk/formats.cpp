@@ -39,6 +39,7 @@ const struct {
     {"CGNS", ".cgns", "HDF5 CGNS", tcv::read_cgns, "cgns"},
     {nullptr, "", "ADF", tcv::read_cgns, "cgns"},
     {"OpenFOAM", ".foam", "OpenFOAM", tcv::read_openfoam, "openfoam"},
+    {"Gmsh 2 and 4.1", ".msh", "Gmsh", tcv::read_gmsh, nullptr},
     {"TetGen", ".node .ele", "TetGen", tcv::read_tetgen, nullptr}, // by extension alone
 };
 
