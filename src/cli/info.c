@@ -327,7 +327,7 @@ static int parse(int argc, char **argv, Request *request) {
       request->block = optarg;
       break;
     case 't':
-      if (!render_option_dataset(NULL, optarg, -1, &desc))
+      if (!strcmp(optarg, "all") || !render_option_dataset(NULL, optarg, -1, &desc))
         return cli_usage_error("info", "--time %s: expected a step, from 0 (or -1, the last, and back), or t=TIME", optarg);
       request->time = optarg;
       break;

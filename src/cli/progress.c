@@ -11,13 +11,21 @@
 
 static atomic_int held, caught;
 
+static struct {
+  const char *label;
+  double started, drawn;
+  double begin, end; /* of the part, while `whole` */
+  bool visible, whole;
+} bar = {.end = 1};
+
 /* Once: a signal may come to one thread while another ends the process. */
 static void end(int signal_number) {
   static atomic_flag ending = ATOMIC_FLAG_INIT;
   if (atomic_flag_test_and_set(&ending))
     return;
-  static const char text[] = "tetcast: error: interrupted\n";
-  const ssize_t ignored = write(STDERR_FILENO, text, sizeof text - 1);
+  static const char text[] = "\r\033[Ktetcast: error: interrupted\n";
+  const size_t skip = bar.visible ? 0 : 4; /* a bar is removed */
+  const ssize_t ignored = write(STDERR_FILENO, text + skip, sizeof text - 1 - skip);
   (void)ignored;
   _exit(128 + signal_number);
 }
@@ -56,13 +64,6 @@ int cli_interrupted(void) {
 }
 
 enum { BAR_WIDTH = 40 };
-
-static struct {
-  const char *label;
-  double started, drawn;
-  double begin, end; /* of the part, while `whole` */
-  bool visible, whole;
-} bar = {.end = 1};
 
 bool cli_progress_show(double fraction) {
   const double now = cli_seconds();

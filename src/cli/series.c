@@ -24,7 +24,6 @@ typedef struct Series {
   TetcastCamera camera;
   int64_t loaded; /* the step that the volume is of, -1: none yet */
   bool held;      /* interruptions are */
-  bool checked;   /* a picture of a former run was made again, and is the same */
   char label[64], place[32];
 } Series;
 
@@ -217,7 +216,7 @@ static bool same_content(const char *left, const char *right) {
   return same;
 }
 
-/* Pictures of a former run go with those of this one if the first of them is what this run makes of its step. */
+/* Pictures of a former run go with those of this one if one of them is what this run makes of its step. */
 static int check_former(Series *series, const char *path) {
   char *folder = cli_path_folder(path);
   const char *dot = strrchr(cli_path_name(path), '.');
@@ -231,7 +230,6 @@ static int check_former(Series *series, const char *path) {
   unlink(again);
   free(folder);
   free(again);
-  series->checked = true;
   return code;
 }
 
@@ -255,15 +253,36 @@ static int render_step(Series *series, int64_t step, const char *path, bool kept
   return code;
 }
 
+/* Size of the picture that a former run has made of the step, 0: none, or it is not to be kept. */
+static off_t size_kept(const Series *series, int64_t step) {
+  char *path = name_of(&series->run->options, step);
+  struct stat status;
+  const bool kept = series->run->options.resume && stat(path, &status) == 0 && S_ISREG(status.st_mode);
+  free(path);
+  return kept ? status.st_size : 0;
+}
+
+/* The largest of the pictures that are kept shows most; a first one may be empty, whatever the settings. */
+static int check_kept(Series *series) {
+  int64_t largest = series->begin;
+  for (int64_t i = series->begin; i < series->end; i++)
+    if (size_kept(series, i) > size_kept(series, largest))
+      largest = i;
+  if (size_kept(series, largest) == 0)
+    return CLI_DONE;
+  char *path = name_of(&series->run->options, largest);
+  const int code = render_step(series, largest, path, true);
+  free(path);
+  return code;
+}
+
 static int render_steps(Series *series) {
-  const RenderOptions *options = &series->run->options;
-  int code = CLI_DONE;
+  int code = check_kept(series);
   for (int64_t i = series->begin; i < series->end && code == CLI_DONE; i++) {
-    char *path = name_of(options, i);
-    struct stat status;
-    const bool kept = options->resume && stat(path, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0;
-    if (!kept || !series->checked)
-      code = render_step(series, i, path, kept);
+    char *path = name_of(&series->run->options, i);
+    const bool kept = size_kept(series, i) > 0;
+    if (!kept)
+      code = render_step(series, i, path, false);
     json_array_append_new(series->entries, entry_of(series, i, path, kept));
     free(path);
     if (cli_interrupted())
