@@ -242,16 +242,21 @@ static void linear_fields_are_exact(void **state) {
       emission[i] = 3 - x[0] - 2 * x[2];                    /* nothing at another */
     }
     set_one(&world, extinction, emission, TETCAST_POINT);
-    const TetcastCamera camera = above(1);
-    TetcastFrame *frame = shoot(&world, &camera, all_channels, 1);
-    for (int p = 0; p < PIXELS; ++p) {
-      if (!meets(p)) continue;
-      const long double x = 0.5L + 1.3L * W / H * ((p % W + 0.5L) / W - 0.5L), y = 0.5L - 1.3L * ((p / W + 0.5L) / H - 0.5L);
-      const long double k[2] = {0.5L * x + 0.25L * y + 2, -2}, j[2] = {3 - x - 2, 2}; /* downwards from z = 1 */
-      close_to(channel(frame, TETCAST_CHANNEL_RADIANCE)[p], (double)chord_radiance(k, j, 1), 2e-14, "radiance", p);
-      close_to(channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH)[p], (double)(k[0] - 1), 1e-14, "optical depth", p);
+    static const double starts[] = {1, 0.37}; /* heights that rays see the mesh from: its top, and inside */
+    for (int i = 0; i < 2; ++i) {
+      TetcastCamera camera = above(1);
+      if (starts[i] < 1) camera.eye[2] = starts[i];
+      TetcastFrame *frame = shoot(&world, &camera, all_channels, 1);
+      for (int p = 0; p < PIXELS; ++p) {
+        if (!meets(p)) continue;
+        const long double x = 0.5L + 1.3L * W / H * ((p % W + 0.5L) / W - 0.5L), y = 0.5L - 1.3L * ((p / W + 0.5L) / H - 0.5L), z = starts[i];
+        const long double k[2] = {0.5L * x + 0.25L * y + 2 * z, -2}, j[2] = {3 - x - 2 * z, 2}; /* downwards */
+        close_to(channel(frame, TETCAST_CHANNEL_RADIANCE)[p], (double)chord_radiance(k, j, z), 2e-14, "radiance", p);
+        close_to(channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH)[p], (double)(k[0] * z - z * z), 1e-14, "optical depth", p);
+        close_to(channel(frame, TETCAST_CHANNEL_PATH_LENGTH)[p], starts[i], 2e-15, "path length", p);
+      }
+      tetcast_frame_destroy(&frame);
     }
-    tetcast_frame_destroy(&frame);
     free(extinction);
     free(emission);
     world_end(&world);
