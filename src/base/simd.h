@@ -191,7 +191,7 @@ typedef struct TcFives {
 #if defined(TC_SIMD_AVX512)
   __m512i pair[4]; /* of lanes i and i + 4: eight words from each record on */
 #else
-  TcWord word[5];
+  TcWord word[5]; /* the rows of the records' words, turned into columns */
 #endif
 } TcFives;
 
@@ -208,11 +208,19 @@ TC_INLINE TcFives tc_load_fives(const uint32_t *words, TcWord index) {
                                        _mm256_loadu_si256((const __m256i *)(const void *)(bytes + at[i + 4])), 1);
   }
 #else
-  for (int k = 0; k < 5; ++k) {
-    uint32_t word[TC_LANES];
-    for (int i = 0; i < TC_LANES; ++i) word[i] = words[(size_t)index[i] * 5 + (size_t)k];
-    memcpy(&fives.word[k], word, sizeof word);
+  const uint32_t *record[4];
+  TcWord row[4];
+  for (int i = 0; i < 4; ++i) {
+    record[i] = words + 5 * (size_t)index[i];
+    memcpy(&row[i], record[i] + 1, sizeof row[i]);
   }
+  fives.word[0] = (TcWord){*record[0], *record[1], *record[2], *record[3]};
+  const TcWord a = __builtin_shufflevector(row[0], row[1], 0, 4, 1, 5), b = __builtin_shufflevector(row[2], row[3], 0, 4, 1, 5);
+  const TcWord c = __builtin_shufflevector(row[0], row[1], 2, 6, 3, 7), d = __builtin_shufflevector(row[2], row[3], 2, 6, 3, 7);
+  fives.word[1] = __builtin_shufflevector(a, b, 0, 1, 4, 5);
+  fives.word[2] = __builtin_shufflevector(a, b, 2, 3, 6, 7);
+  fives.word[3] = __builtin_shufflevector(c, d, 0, 1, 4, 5);
+  fives.word[4] = __builtin_shufflevector(c, d, 2, 3, 6, 7);
 #endif
   return fives;
 }
@@ -263,19 +271,13 @@ TC_INLINE void tc_transpose(const TcRecord record[TC_LANES], TcVec component[4])
   component[1] = (TcVec)_mm512_permutex2var_pd(b, front, d);
   component[2] = (TcVec)_mm512_permutex2var_pd(a, back, c);
   component[3] = (TcVec)_mm512_permutex2var_pd(b, back, d);
-#elif defined(TC_SIMD_AVX2)
-  const __m256d a = _mm256_unpacklo_pd((__m256d)record[0], (__m256d)record[1]);
-  const __m256d b = _mm256_unpackhi_pd((__m256d)record[0], (__m256d)record[1]);
-  const __m256d c = _mm256_unpacklo_pd((__m256d)record[2], (__m256d)record[3]);
-  const __m256d d = _mm256_unpackhi_pd((__m256d)record[2], (__m256d)record[3]);
-  component[0] = (TcVec)_mm256_permute2f128_pd(a, c, 0x20);
-  component[1] = (TcVec)_mm256_permute2f128_pd(b, d, 0x20);
-  component[2] = (TcVec)_mm256_permute2f128_pd(a, c, 0x31);
-  component[3] = (TcVec)_mm256_permute2f128_pd(b, d, 0x31);
 #else
-  for (int k = 0; k < 4; ++k) {
-    for (int i = 0; i < TC_LANES; ++i) component[k][i] = record[i][k];
-  }
+  const TcVec a = __builtin_shufflevector(record[0], record[1], 0, 4, 2, 6), b = __builtin_shufflevector(record[0], record[1], 1, 5, 3, 7);
+  const TcVec c = __builtin_shufflevector(record[2], record[3], 0, 4, 2, 6), d = __builtin_shufflevector(record[2], record[3], 1, 5, 3, 7);
+  component[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  component[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  component[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  component[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
 #endif
 }
 

@@ -96,6 +96,7 @@ static void look_at_pieces(TetcastTransferFunction *transfer) {
   TcPieces *pieces = &transfer->pieces;
   memset(pieces->largest, 0, sizeof pieces->largest);
   pieces->narrow = false;
+  pieces->one_color = true;
   double above = (double)pieces->count + 1, below = -1;
   for (int64_t i = pieces->count; i >= 0; --i) {
     if (!is_empty(&transfer->piece[i])) above = (double)i;
@@ -110,6 +111,12 @@ static void look_at_pieces(TetcastTransferFunction *transfer) {
     if (is_empty(piece)) continue;
     for (int k = 0; k < 3; ++k) {
       pieces->largest[k] = fmax(pieces->largest[k], fmax(piece->at_low.color[k], piece->at_high.color[k]));
+    }
+  }
+  for (int64_t i = 0; i <= pieces->count; ++i) {
+    const TcPiece *piece = &transfer->piece[i];
+    for (int k = 0; !is_empty(piece) && k < 3; ++k) {
+      if (piece->at_low.color[k] != pieces->largest[k] || piece->at_high.color[k] != pieces->largest[k]) pieces->one_color = false;
     }
   }
 }

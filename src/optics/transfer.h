@@ -27,6 +27,7 @@ typedef struct TcPieces {
   const double *knots; /* [count], ascending */
   const TcPiece *pieces;
   double largest[3]; /* of each colour component, where there is any extinction */
+  bool one_color;    /* the colour is `largest` wherever there is any extinction */
   bool narrow;       /* a piece is so narrow that `inverse` overflows */
 } TcPieces;
 

@@ -99,7 +99,7 @@ static void face_candidate(void *user, uint32_t i, unsigned lanes) {
   const unsigned signs[3] = {tc_bits(tc_gt(e[0], tc_set(0))), tc_bits(tc_gt(e[1], tc_set(0))), tc_bits(tc_gt(e[2], tc_set(0)))};
   unsigned inside = lanes & ((signs[0] & signs[1] & signs[2]) | ~(signs[0] | signs[1] | signs[2]));
   if (!inside) return;
-  tc_crossings(p, e, &z, &s);
+  tc_crossings(false, p, e, &z, &s);
   for (; inside; inside &= inside - 1) {
     const int lane = __builtin_ctz(inside);
     tc_spans_append(&query->spans[lane], (TcSpan){.begin = z[lane], .end = z[lane], .s0 = s[lane], .id = i});

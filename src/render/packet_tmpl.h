@@ -64,24 +64,19 @@ TC_INLINE unsigned at_shell(const TcShell *shell, TcMask active, TcWord cell) {
 }
 
 /* The light of what walks have crossed, in the lanes of `moved`: `cell` from depth z and scalar s on, what lies beyond *seen. */
-TC_INLINE void add_light(const TetcastVolume *volume, const bool cells, const TcPieces *pieces, TcMask moved, TcVec z, TcVec s, TcWord cell,
+TC_INLINE void add_light(const TetcastVolume *volume, const bool cells, const bool colored, const TcPieces *pieces, TcMask moved, TcVec z, TcVec s, TcWord cell,
                          Packet *packet, TcWorker *worker) {
   const TcWalks *walks = &packet->walks;
-  const double thin = worker->tolerance.thin;
   const TcVec from = packet->seen;
   moved = tc_and(moved, tc_gt(walks->z, from));
   worker->segments += __builtin_popcount(tc_bits(moved));
   packet->seen = tc_select(moved, walks->z, from);
   if (cells) {
-    double value[TC_LANES] = {0};
-    for (unsigned lanes = tc_bits(moved); lanes; lanes &= lanes - 1) {
-      const int i = __builtin_ctz(lanes);
-      value[i] = volume->cell_values[cell[i]];
-    }
-    TcVec values;
-    memcpy(&values, value, sizeof values);
-    moved = tc_and(moved, tc_eq(values, values)); /* NaN is transparent */
-    tc_lights_add(&packet->lights, pieces, thin, moved, walks->z - from, values, values);
+    const TcWord zero = {0}, index = tc_select_word(moved, cell, zero);
+    TcVec value;
+    for (int i = 0; i < TC_LANES; ++i) value[i] = volume->cell_values[index[i]];
+    moved = tc_and(moved, tc_eq(value, value)); /* NaN is transparent */
+    tc_lights_add_constant(colored, &packet->lights, pieces, moved, walks->z - from, value);
   } else {
     TcVec s0 = s;
     const TcMask behind = tc_and(moved, tc_lt(z, from));
@@ -90,7 +85,7 @@ TC_INLINE void add_light(const TetcastVolume *volume, const bool cells, const Tc
       s0 = tc_select(behind, (1 - w) * s + w * walks->s, s);
     }
     moved = tc_and(moved, tc_and(tc_eq(s0, s0), tc_eq(walks->s, walks->s)));
-    tc_lights_add(&packet->lights, pieces, thin, moved, walks->z - from, s0, walks->s);
+    tc_lights_add(colored, &packet->lights, pieces, worker->tolerance.thin, moved, walks->z - from, s0, walks->s);
   }
 }
 
@@ -117,10 +112,10 @@ static bool packet_begin(const TcShell *shell, const TcRays *placed, const TcVec
 static bool packet_runs(const Packet *packet) { return packet->starting || packet->active; }
 
 /* The lanes of `starting` set out. */
-static void set_out(const TcShell *shell, const bool wide, Packet *packet) {
+static void set_out(const TcShell *shell, const bool wide, const bool cells, Packet *packet) {
   TcWalks *walks = &packet->walks;
   const TcMask mask = tc_mask_of(packet->starting);
-  tc_walks_begin(shell, wide, &packet->rays, mask, packet->face, walks);
+  tc_walks_begin(shell, wide, cells, &packet->rays, mask, packet->face, walks);
   packet->seen = tc_select(mask, tc_max(walks->z, packet->rays.near), packet->seen);
   packet->active |= packet->starting;
   packet->starting = packet->again = 0;
@@ -145,11 +140,11 @@ static void arrive(const TcShell *shell, Packet *packet) {
  * the face where they leave is left when they end; they need not be looked at one by one, and what is hard to predict is not branched on.
  *
  * A packet's next step waits for the one before, about 200 cycles; another packet's fits in between. */
-TC_INLINE void advance(const TcShell *shell, const bool wide, const bool cells, const TcPieces *pieces, TcWorker *worker, Packet *packet) {
+TC_INLINE void advance(const TcShell *shell, const bool wide, const bool cells, const bool colored, const TcPieces *pieces, TcWorker *worker, Packet *packet) {
   TcMask active[TC_PACKETS];
   bool halt = false;
   TC_EACH_PACKET {
-    if (packet[i].starting) set_out(shell, wide, &packet[i]);
+    if (packet[i].starting) set_out(shell, wide, cells, &packet[i]);
     active[i] = tc_mask_of(packet[i].active & ~packet[i].ended);
   }
   while (!halt) {
@@ -163,11 +158,11 @@ TC_INLINE void advance(const TcShell *shell, const bool wide, const bool cells, 
       tc_step_cells(shell->volume, active[i], &packet[i].walks, &step[i]);
     }
     TC_EACH_PACKET tc_step_vertices(shell->volume, wide, &packet[i].rays, &step[i]);
-    TC_EACH_PACKET lost[i] = tc_step_out(active[i], &step[i], &packet[i].walks);
-    TC_EACH_PACKET add_light(shell->volume, cells, pieces, tc_and_not(active[i], lost[i]), z[i], s[i], packet[i].from, &packet[i], worker);
+    TC_EACH_PACKET lost[i] = tc_step_out(cells, active[i], &step[i], &packet[i].walks);
+    TC_EACH_PACKET add_light(shell->volume, cells, colored, pieces, tc_and_not(active[i], lost[i]), z[i], s[i], packet[i].from, &packet[i], worker);
     TC_EACH_PACKET {
-      if (++packet[i].steps % 64 == 0) tc_lights_end_block(&packet[i].lights);
-      const TcMask opaque = tc_lights_opaque(&packet[i].lights, pieces, worker->tolerance.opaque, active[i]);
+      if (++packet[i].steps % 64 == 0) tc_lights_end_block(colored, &packet[i].lights);
+      const TcMask opaque = tc_lights_opaque(colored, &packet[i].lights, pieces, worker->tolerance.opaque, active[i]);
       if (tc_any(tc_or(lost[i], opaque))) {
         packet[i].stopped |= tc_bits(opaque);
         worker->lost += __builtin_popcount(tc_bits(lost[i]));
@@ -186,20 +181,24 @@ TC_INLINE void advance(const TcShell *shell, const bool wide, const bool cells, 
   }
 }
 
-/* One function for each way the data lie. */
+/* One function for each way the data lie, and for what is asked of them. */
 typedef void Advance(const TcShell *shell, const TcPieces *pieces, TcWorker *worker, Packet packet[TC_PACKETS]);
-#define ADVANCE(name, wide, cells)                                                                                               \
+#define ADVANCE(name, wide, cells, colored)                                                                                      \
   static __attribute__((noinline)) void name(const TcShell *shell, const TcPieces *pieces, TcWorker *worker, Packet *packet) { \
-    advance(shell, wide, cells, pieces, worker, packet);                                                                       \
+    advance(shell, wide, cells, colored, pieces, worker, packet);                                                              \
   }
-ADVANCE(advance_wide, true, false)
-ADVANCE(advance_narrow, false, false)
-ADVANCE(advance_wide_cells, true, true)
-ADVANCE(advance_narrow_cells, false, true)
+#define ADVANCES(name, colored)              \
+  ADVANCE(name##_narrow, false, false, colored) \
+  ADVANCE(name##_wide, true, false, colored)    \
+  ADVANCE(name##_narrow_cells, false, true, colored) \
+  ADVANCE(name##_wide_cells, true, true, colored)
+ADVANCES(depth, false)
+ADVANCES(color, true)
 
-static Advance *advance_for(const TetcastVolume *volume) {
-  if (volume->association == TETCAST_CELL) return volume->vertices_are_double ? advance_wide_cells : advance_narrow_cells;
-  return volume->vertices_are_double ? advance_wide : advance_narrow;
+static Advance *advance_for(const TetcastVolume *volume, const TcPieces *pieces) {
+  static Advance *const ways[2][2][2] = {{{depth_narrow, depth_wide}, {depth_narrow_cells, depth_wide_cells}},
+                                         {{color_narrow, color_wide}, {color_narrow_cells, color_wide_cells}}};
+  return ways[!pieces->one_color][volume->association == TETCAST_CELL][volume->vertices_are_double];
 }
 
 /* Where packets come from, and what becomes of their light. */
@@ -219,9 +218,15 @@ static bool begin_waiting(const TcShell *shell, const TcRays *placed, const TcVe
   return packet_begin(shell, placed, rest, kz, along, spans, packet);
 }
 
+static void end_lights(const TcPieces *pieces, TcLights *lights) {
+  tc_lights_end_block(!pieces->one_color, lights);
+  lights->alpha = tc_segments_constant(tc_all(), lights->depth).w0;
+  for (int k = 0; pieces->one_color && k < 3; ++k) lights->color[k] = lights->alpha * pieces->largest[k];
+}
+
 /* All packets of a source, several at a time. */
 static bool run_packets(const TcShell *shell, const TcPieces *pieces, TcWorker *worker, const Source *source) {
-  Advance *const step = advance_for(shell->volume);
+  Advance *const step = advance_for(shell->volume, pieces);
   Packet packets[TC_PACKETS];
   bool under_way[TC_PACKETS] = {false};
   memset(packets, 0, sizeof packets);
@@ -230,7 +235,7 @@ static bool run_packets(const TcShell *shell, const TcPieces *pieces, TcWorker *
     for (int i = 0; i < TC_PACKETS; ++i) {
       while (!packet_runs(&packets[i])) {
         if (under_way[i]) {
-          tc_lights_end_block(&packets[i].lights);
+          end_lights(pieces, &packets[i].lights);
           source->finish(source->user, &packets[i]);
         }
         if (!source->next(source->user, worker->spans + i * TC_PACKET, &packets[i], &under_way[i])) return false;
@@ -297,7 +302,7 @@ static bool next_of_tile(void *user, TcSpans *spans, Packet *packet, bool *more)
 
 static void finish_of_tile(void *user, const Packet *packet) {
   Tile *tile = user;
-  const TcVec alpha = tc_segments_constant(tc_all(), packet->lights.depth).w0;
+  const TcVec alpha = packet->lights.alpha;
   for (unsigned left = packet->lanes; left; left &= left - 1) {
     const int i = __builtin_ctz(left);
     double *sum = tile->sum[(packet->y + i / PACKET_X - tile->y0) * TC_TILE + packet->x + i % PACKET_X - tile->x0];

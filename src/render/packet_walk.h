@@ -84,19 +84,20 @@ TC_INLINE void tc_edges(TcMask active, const TcPoints *const a[3], const TcPoint
   }
 }
 
-TC_INLINE void tc_crossings(const TcPoints v[3], const TcVec edge[3], TcVec *z, TcVec *s) {
+/* `cells`, as in the rest of this file: the field is one of cells, and vertices have no value. */
+TC_INLINE void tc_crossings(const bool cells, const TcPoints v[3], const TcVec edge[3], TcVec *z, TcVec *s) {
   const TcVec inverse = 1 / (edge[0] + edge[1] + edge[2]);
   *z = (edge[1] * v[0].z + edge[2] * v[1].z + edge[0] * v[2].z) * inverse;
-  *s = (edge[1] * v[0].s + edge[2] * v[1].s + edge[0] * v[2].s) * inverse;
+  if (!cells) *s = (edge[1] * v[0].s + edge[2] * v[1].s + edge[0] * v[2].s) * inverse;
 }
 
-TC_INLINE TcPoints tc_select_points(TcMask m, TcPoints a, TcPoints b) {
-  return (TcPoints){tc_select(m, a.x, b.x), tc_select(m, a.y, b.y), tc_select(m, a.z, b.z), tc_select(m, a.s, b.s),
+TC_INLINE TcPoints tc_select_points(const bool cells, TcMask m, TcPoints a, TcPoints b) {
+  return (TcPoints){tc_select(m, a.x, b.x), tc_select(m, a.y, b.y), tc_select(m, a.z, b.z), cells ? b.s : tc_select(m, a.s, b.s),
                     tc_select_word(m, a.id, b.id)};
 }
 
 /* Sets the lanes of `mask` out from shell faces. */
-TC_INLINE void tc_walks_begin(const TcShell *shell, const bool wide, const TcRays *rays, TcMask mask,
+TC_INLINE void tc_walks_begin(const TcShell *shell, const bool wide, const bool cells, const TcRays *rays, TcMask mask,
                               const uint32_t face[TC_LANES], TcWalks *walks) {
   TcWord id[3] = {{0}, {0}, {0}}, cell = {0};
   unsigned lanes = tc_bits(mask);
@@ -115,14 +116,14 @@ TC_INLINE void tc_walks_begin(const TcShell *shell, const bool wide, const TcRay
   TcVec e[3];
   tc_edges(mask, (const TcPoints *const[]){&v[0], &v[1], &v[2]}, (const TcPoints *const[]){&v[1], &v[2], &v[0]}, e);
   const TcMask turn = tc_lt(e[0], tc_set(0)); /* clockwise: v[1] and v[2] change places */
-  const TcPoints second = tc_select_points(turn, v[2], v[1]), third = tc_select_points(turn, v[1], v[2]);
+  const TcPoints second = tc_select_points(cells, turn, v[2], v[1]), third = tc_select_points(cells, turn, v[1], v[2]);
   const TcVec edge[3] = {tc_select(turn, -e[2], e[0]), tc_select(turn, -e[1], e[1]), tc_select(turn, -e[0], e[2])};
-  walks->v[0] = tc_select_points(mask, v[0], walks->v[0]);
-  walks->v[1] = tc_select_points(mask, second, walks->v[1]);
-  walks->v[2] = tc_select_points(mask, third, walks->v[2]);
+  walks->v[0] = tc_select_points(cells, mask, v[0], walks->v[0]);
+  walks->v[1] = tc_select_points(cells, mask, second, walks->v[1]);
+  walks->v[2] = tc_select_points(cells, mask, third, walks->v[2]);
   for (int k = 0; k < 3; ++k) walks->edge[k] = tc_select(mask, edge[k], walks->edge[k]);
   walks->cell = tc_select_word(mask, cell, walks->cell);
-  tc_crossings(walks->v, walks->edge, &walks->z, &walks->s);
+  tc_crossings(cells, walks->v, walks->edge, &walks->z, &walks->s);
 }
 
 /* A step of walks comes in three parts, which several packets take by turns: each waits for what the one before loads or decides, and in
@@ -147,7 +148,7 @@ TC_INLINE void tc_step_vertices(const TetcastVolume *volume, const bool wide, co
 
 /* Crosses the cells in the lanes of `active`, where `cell` becomes what is behind, TC_SHELL | face included. Returns the lanes that
  * found no way out. */
-TC_INLINE TcMask tc_step_out(TcMask active, const TcStep *step, TcWalks *walks) {
+TC_INLINE TcMask tc_step_out(const bool cells, TcMask active, const TcStep *step, TcWalks *walks) {
   TcPoints *v = walks->v;
   const TcPoints q = step->q;
   TcVec e[3];
@@ -162,9 +163,9 @@ TC_INLINE TcMask tc_step_out(TcMask active, const TcStep *step, TcWalks *walks) 
   for (int k = 0; k < 3; ++k) {
     const TcVec edge = tc_select(out[(k + 1) % 3], e[k], walks->edge[k]);
     walks->edge[k] = tc_select(out[k], -e[(k + 1) % 3], edge);
-    v[k] = tc_select_points(out[k], q, v[k]);
+    v[k] = tc_select_points(cells, out[k], q, v[k]);
   }
-  tc_crossings(v, walks->edge, &walks->z, &walks->s);
+  tc_crossings(cells, v, walks->edge, &walks->z, &walks->s);
   return tc_and_not(active, tc_or(tc_or(out[0], out[1]), out[2]));
 }
 

@@ -199,6 +199,7 @@ static inline TetcastTransferFunction *random_transfer(TetcastContext *context, 
     }
     at += 0.4 * uniform(seed);
   }
+  if (uniform(seed) < 0.2) colors = 1;
   at = 0;
   while (extinctions < 14 && at < 1.1) {
     for (int twice = uniform(seed) < 0.2; twice >= 0; --twice, ++extinctions) {
