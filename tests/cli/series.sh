@@ -90,8 +90,12 @@ rm x.0000.png
 accept render s.pvd --time all $small -o x.png --resume
 same x.0000.png s.0000.png
 rm x.0001.png
-refuse 1 "--resume: 'x.000[02].png' is not the picture" render s.pvd --time all $small -o x.png --resume --preset inferno
-refuse 1 "--resume: 'x.000[02].png' is not the picture" render s.pvd --time all --size 41x30 -o x.png --resume
+refuse 1 '.png'"' is not the picture" render s.pvd --time all $small -o x.png --resume --preset inferno
+refuse 1 '.png'"' is not the picture" render s.pvd --time all --size 41x30 -o x.png --resume
+rm -f y.*
+accept render s.pvd --time all --range 6,60 $small -o y.png # empty but for one
+rm y.0002.png
+refuse 1 "--resume: 'y.0001.png' is not the picture" render s.pvd --time all --range 6,60 $small -o y.png --resume --preset inferno
 accept render s.pvd --time all $small -o x.png # and anew
 exists x.0001.png
 
