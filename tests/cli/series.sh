@@ -150,6 +150,19 @@ warn 'NaN' render s.pvd --time all $small -o nan.png
 "$tetcast" render s.pvd --time all $small -o nan.png 2>err
 [ "$(wc -l <err)" = 1 ] || fail "$(cat err)"
 
+# A series of a format whose files are tried in a child process first, also after pictures have been made.
+if [ -d "$TETCAST_DATA/cells/ensight" ] && "$tetcast" info --formats | grep -qF .case; then
+  cp "$TETCAST_DATA"/cells/ensight/elements6.{geo,Nsca} .
+  for i in 0 1 2; do cp elements6.Nsca "n0$i.Nsca"; done
+  printf '%s\n' FORMAT 'type: ensight' GEOMETRY 'model: elements6.geo' VARIABLE 'scalar per node: 1 s n**.Nsca' TIME 'time set: 1' \
+    'number of steps: 3' 'filename start number: 0' 'filename increment: 1' 'time values: 0.0 0.5 1.5' >ensight.case
+  accept render ensight.case --time all $small
+  exists ensight.0001.png
+  same ensight.0000.png ensight.0002.png
+  accept info ensight.case
+  contains '3, from t=0 to t=1.5'
+fi
+
 # What makes no sense.
 refuse 2 'all' render s.pvd --time every
 refuse 2 'or step, or series' render s.pvd --range steps
