@@ -74,6 +74,10 @@ typedef struct TetcastCut TetcastCut;
  * faces are in one plane. Either way the tetrahedra's signed volumes add up to what the cell's surface encloses, positive for cells
  * whose nodes are in VTK's order; wedges (about which programs disagree) and polyhedra are always positive.
  *
+ * vtkDataSetTriangleFilter takes the other way: its diagonals avoid a face's vertex of largest index, in two faces of three the same. Cells
+ * that it has cut already don't match uncut neighbours here: where the face between them is plane nothing is lost, where it is warped,
+ * what is between the two ways to cut it. (Cones from the smallest vertex serve polyhedra with any faces as well.)
+ *
  * Curved cells are first cut into straight ones between points of their lattice, at which all fields are as the cell's shape functions say.
  * Neighbours share the points of the face between them.
  *

@@ -47,14 +47,17 @@ static const struct {
     [OPTION_OUTPUT] = {"output", KIND_PATH, AT(output), .form = "expected a path"},
     [OPTION_ARRAY] = {"array", KIND_TEXT, AT(array), .excludes = DIRECT, .form = "expected NAME, NAME:component or NAME:mag"},
     [OPTION_BLOCK] = {"block", KIND_TEXT, AT(block), .form = "expected the name of a block"},
-    [OPTION_TIME] = {"time", KIND_TEXT, AT(time), .form = "expected a step, from 0 (or -1, the last, and back), or t=TIME"},
+    [OPTION_TIME] = {"time", KIND_TEXT, AT(time), .form = "expected a step, from 0 (or -1, the last, and back), t=TIME, or all"},
     [OPTION_MERGE_TOLERANCE] = {"merge-tolerance", KIND_NUMBERS, AT(merge_tolerance), 1, 1, 0, DBL_MAX,
                                 .form = "expected a distance, 0 or above"},
+    [OPTION_CELL_TO_POINT] = {"cell-to-point", KIND_FLAG, AT(cell_to_point), .form = "expected true or false"},
+    [OPTION_SUBDIVIDE] = {"subdivide", KIND_INTEGERS, AT(subdivide), 1, 1, 0, TETCAST_MAX_SUBDIVISION,
+                          .form = "expected a whole number from 1 to 16, or 0: as the nodes lie"},
     [OPTION_TRANSFER] = {"transfer", KIND_PATH, AT(transfer), .excludes = BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | DIRECT,
                          .form = "expected a transfer function or the path of one"},
     [OPTION_PRESET] = {"preset", KIND_TEXT, AT(preset), .excludes = BIT(OPTION_TRANSFER) | DIRECT, .form = "expected a name"},
     [OPTION_RANGE] = {"range", KIND_NUMBERS, AT(range), 2, 2, -DBL_MAX, DBL_MAX, .excludes = BIT(OPTION_TRANSFER) | DIRECT,
-                      .form = "expected two numbers, LO not above HI"},
+                      .form = "expected two numbers, LO not above HI, or step, or series"},
     [OPTION_OPACITY_MODEL] = {"opacity-model", KIND_CHOICE, AT(opacity_model), .names = opacity_models, .excludes = DIRECT,
                               .form = "expected unit-distance, vtk-unstructured or ospray"},
     [OPTION_EXTINCTION] = {"extinction", KIND_TEXT, AT(extinction), .excludes = TRANSFER, .only = COMMAND_RENDER,
@@ -97,6 +100,8 @@ static const struct {
     [OPTION_STATS] = {"stats", KIND_PATH, AT(stats), .only = COMMAND_RENDER, .form = "expected a path"},
     [OPTION_SCENE] = {"scene", KIND_PATH, AT(scene), .form = "expected a path"},
     [OPTION_SAVE_SCENE] = {"save-scene", KIND_PATH, AT(save_scene), .only = COMMAND_RENDER, .form = "expected a path"},
+    [OPTION_RESUME] = {"resume", KIND_FLAG, AT(resume), .only = COMMAND_RENDER, .form = "expected true or false"},
+    [OPTION_STRICT] = {"strict", KIND_FLAG, AT(strict), .form = "expected true or false"},
     [OPTION_QUIET] = {"quiet", KIND_FLAG, AT(quiet), .form = "expected true or false"},
     [OPTION_REFINE] = {"refine", KIND_FLAG, AT(refine), .only = COMMAND_CONVERGE},
     [OPTION_NO_PLOTS] = {"no-plots", KIND_FLAG, AT(no_plots), .only = COMMAND_CONVERGE},
@@ -197,7 +202,7 @@ bool render_option_dataset(const char *block, const char *time, double merge_tol
   desc->block = block;
   desc->merge_tolerance = merge_tolerance;
   double number = 0;
-  if (!time)
+  if (!time || !strcmp(time, "all"))
     return true;
   if (!strncmp(time, "t=", 2))
     return cli_parse_number(time + 2, &desc->time);
@@ -338,8 +343,18 @@ static const char *set_choice(OptionId id, void *at, const OptionValue *value) {
   return table[id].form;
 }
 
+static const char *set_range(RenderOptions *options, const OptionValue *value) {
+  const bool step = value->text && !strcmp(value->text, "step"), series = value->text && !strcmp(value->text, "series");
+  const char *reason = step || series ? NULL : set_numbers(OPTION_RANGE, options->range, value);
+  if (!reason)
+    options->range_kind = step ? RANGE_STEP : series ? RANGE_SERIES : RANGE_FIXED;
+  return reason;
+}
+
 const char *render_options_set(RenderOptions *options, OptionId id, const OptionValue *value) {
   void *at = (char *)options + table[id].at;
+  if (id == OPTION_RANGE)
+    return set_range(options, value);
   switch (table[id].kind) {
   case KIND_NUMBERS:
   case KIND_INTEGERS:
@@ -378,7 +393,8 @@ static int set_from_text(RenderOptions *options, OptionId id, const char *text) 
   OptionValue value = {.text = text};
   if (table[id].kind == KIND_NUMBERS || table[id].kind == KIND_INTEGERS) {
     value.count = cli_parse_numbers(text, id == OPTION_SIZE ? 'x' : ',', table[id].most, value.numbers);
-    value.text = NULL;
+    if (value.count > 0 || id != OPTION_RANGE) /* which may be a word */
+      value.text = NULL;
   } else if (table[id].kind == KIND_FLAG) {
     value.count = 1;
     value.numbers[0] = 1;
@@ -458,11 +474,15 @@ static void take_scene(RenderOptions *options) {
 static int check_use(const RenderOptions *options) {
   if (options->command == COMMAND_CONVERGE && !options->output)
     return cli_usage_error("converge", "no folder for the report given: -o REPORTDIR");
+  if (options->command == COMMAND_CONVERGE && options->time && !strcmp(options->time, "all"))
+    return cli_usage_error("converge", "--time all: expected a single step");
+  if (options->command == COMMAND_CONVERGE && render_options_range(options) == RANGE_SERIES)
+    return cli_usage_error("converge", "--range series: expected two numbers, LO not above HI, or step");
   if (options->input)
     return -1;
   if (!options->refine)
     return cli_usage_error(command_name(options), "no input given");
-  const uint64_t used = BIT(OPTION_OUTPUT) | BIT(OPTION_THREADS) | BIT(OPTION_QUIET) | BIT(OPTION_REFINE) |
+  const uint64_t used = BIT(OPTION_OUTPUT) | BIT(OPTION_THREADS) | BIT(OPTION_QUIET) | BIT(OPTION_STRICT) | BIT(OPTION_REFINE) |
                         BIT(OPTION_NO_PLOTS);
   for (int id = 0; id < OPTION_COUNT; id++)
     if (options->given & ~used & BIT(id))

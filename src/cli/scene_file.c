@@ -136,18 +136,26 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
     failed |= json_object_set_new(scene, "array", json_string(array));
   if (options->block)
     failed |= json_object_set_new(scene, "block", json_string(options->block));
-  if (options->time)
+  if (options->time) /* "t=0.5", "all" */
     json_object_set_new(scene, "time", json_string(options->time));
   if (options->merge_tolerance >= 0)
     json_object_set_new(scene, "merge_tolerance", json_real(options->merge_tolerance));
+  if (options->cell_to_point)
+    json_object_set_new(scene, "cell_to_point", json_true());
+  if (options->subdivide > 0)
+    json_object_set_new(scene, "subdivide", json_integer((json_int_t)options->subdivide));
   free(input);
   if (failed) {
     cli_error("cannot write '%s': the name of the input, the output, the array or the block is not UTF-8", options->save_scene);
     json_decref(scene);
     return false;
   }
-  if (transfer_function)
+  if (transfer_function) {
     json_object_set_new(scene, "transfer", transfer_object(transfer_function));
+  } else if (!render_options_direct(options)) {
+    json_object_set_new(scene, "preset", json_string(render_options_preset(options)));
+    json_object_set_new(scene, "range", json_string("step"));
+  }
   if (render_options_given(options, OPTION_GROUPS))
     json_object_set_new(scene, "groups", json_boolean(options->groups));
   json_object_set_new(scene, "camera", camera_object(camera));

@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "mesh/cut.h"
 
-enum { GRAIN = 4096 };
+enum { GRAIN = 4096, BATCH = 32 };
 
 struct TetcastCut {
   TetcastContext *context;
@@ -46,6 +46,8 @@ typedef struct Cutter {
   int64_t offset_stride, node_stride, face_stride, place_stride;
   Scratch *scratch; /* [threads] */
   Block *blocks;
+  TcHexahedra hexahedra;
+  uint8_t *ways; /* [cell_count]: 1 + that of a hexahedron that the table cuts, found the first time; 0: any other cell */
   TetcastCut *cut;
   atomic_llong first_bad;
   bool writes; /* the second time */
@@ -117,11 +119,19 @@ int64_t tc_cell_nodes(unsigned type) {
   return tc_is_curved(type) ? tc_curved_nodes(type) : 0;
 }
 
+/* An integer of a packed array, most often of this type. */
+static inline int64_t integer_at(const TetcastArray *array, int64_t stride, int64_t i) {
+  if (array->type != TETCAST_TYPE_INT64) return tc_array_int64(array, stride, i, 0);
+  int64_t value;
+  memcpy(&value, (const char *)array->data + i * stride, sizeof value);
+  return value;
+}
+
 /* Where the cell's nodes are in the connectivity, and how many. */
 static bool find_nodes(const Cutter *cutter, int64_t i, int64_t *begin, int64_t *count) {
   const TetcastCellsDesc *desc = cutter->desc;
-  *begin = tc_array_int64(&desc->offsets, cutter->offset_stride, i, 0);
-  const int64_t end = tc_array_int64(&desc->offsets, cutter->offset_stride, i + 1, 0);
+  *begin = integer_at(&desc->offsets, cutter->offset_stride, i);
+  const int64_t end = integer_at(&desc->offsets, cutter->offset_stride, i + 1);
   *count = end - *begin;
   return *begin >= 0 && end >= *begin && end <= desc->connectivity.count;
 }
@@ -213,6 +223,15 @@ static Fault load_curved(Cutter *cutter, int64_t i, int64_t begin, Scratch *scra
   return read_nodes(cutter, i, begin, cell->lattice.nodes, scratch->node);
 }
 
+/* A voxel's nodes have x fastest, where a hexahedron's go round. */
+static void swap_voxel(uint32_t *id) {
+  for (int j = 2; j < 8; j += 4) {
+    const uint32_t swap = id[j];
+    id[j] = id[j + 1];
+    id[j + 1] = swap;
+  }
+}
+
 /* Reads cell i: nodes of straight ones and polyhedra to scratch->pieces.id, of curved ones to scratch->node. */
 static Fault load(Cutter *cutter, int64_t i, Scratch *scratch, Cell *cell) {
   const TetcastCellsDesc *desc = cutter->desc;
@@ -237,13 +256,7 @@ static Fault load(Cutter *cutter, int64_t i, Scratch *scratch, Cell *cell) {
   cell->shape = *tc_shape(straight[k].shape);
   uint32_t *id = scratch->pieces.id;
   const Fault fault = read_nodes(cutter, i, begin, needed, id);
-  if (type == TETCAST_CELL_VOXEL) { /* x fastest, where a hexahedron goes round */
-    for (int j = 2; j < 8; j += 4) {
-      const uint32_t swap = id[j];
-      id[j] = id[j + 1];
-      id[j + 1] = swap;
-    }
-  }
+  if (type == TETCAST_CELL_VOXEL) swap_voxel(id);
   return fault;
 }
 
@@ -309,8 +322,10 @@ static bool add_point(Cutter *cutter, const Cell *cell, const int at[3], const T
 static TetcastStatus add_lattices(Cutter *cutter) {
   Scratch *scratch = &cutter->scratch[0];
   TcPoints *points = &cutter->cut->points;
+  bool curved[256];
+  for (unsigned type = 0; type < 256; ++type) curved[type] = tc_is_curved(type);
   for (int64_t i = 0; i < cutter->cell_count; ++i) {
-    if (!tc_is_curved(type_of(cutter, i))) continue;
+    if (!curved[type_of(cutter, i) & 255]) continue;
     Cell cell;
     const Fault fault = load(cutter, i, scratch, &cell);
     if (fault == NOTHING) continue;
@@ -443,11 +458,89 @@ static void cut_cell(Cutter *cutter, const Cell *cell, Scratch *scratch, Block *
   info->oversized += cell->oversized;
 }
 
+/* ── hexahedra, of which there may be many and nothing be wrong with any ── */
+
+/* The nodes of cell i; false where something is to be told about it. */
+static inline bool read_hexahedron(const Cutter *cutter, int64_t i, uint32_t id[8]) {
+  const TetcastCellsDesc *desc = cutter->desc;
+  const TetcastArray *nodes = &desc->connectivity;
+  int64_t begin = 0, count = 8, stride = cutter->node_stride;
+  if (desc->hidden && (desc->hidden[i] & desc->hidden_bits)) return false;
+  if (desc->offsets.count) {
+    if (!find_nodes(cutter, i, &begin, &count) || count != 8) return false;
+  } else {
+    begin = i;
+  }
+  const char *at = (const char *)nodes->data + begin * stride;
+  if (!desc->offsets.count) stride = (int64_t)tc_type_size(nodes->type);
+  uint64_t largest = 0;
+  if (nodes->type == TETCAST_TYPE_INT64) {
+    for (int k = 0; k < 8; ++k) {
+      int64_t node;
+      memcpy(&node, at + k * stride, sizeof node);
+      id[k] = (uint32_t)node;
+      largest = (uint64_t)node > largest ? (uint64_t)node : largest;
+    }
+  } else if (nodes->type == TETCAST_TYPE_INT32) {
+    for (int k = 0; k < 8; ++k) {
+      memcpy(&id[k], at + k * stride, sizeof id[k]);
+      largest = id[k] > largest ? id[k] : largest;
+    }
+  } else {
+    return false;
+  }
+  if (type_of(cutter, i) == TETCAST_CELL_VOXEL) swap_voxel(id);
+  return largest < (uint64_t)cutter->vertex_count;
+}
+
+/* Counts those of the cells [begin, end) that the table cuts. First their vertices are asked for, so that memory is waited for once. */
+static void count_hexahedra(Cutter *cutter, int64_t begin, int64_t end, Block *block) {
+  uint32_t id[BATCH][8];
+  int way[BATCH];
+  int64_t at[BATCH];
+  int n = 0;
+  for (int64_t i = begin; i < end; ++i) {
+    const unsigned type = type_of(cutter, i);
+    if ((type != TETCAST_CELL_HEXAHEDRON && type != TETCAST_CELL_VOXEL) || !read_hexahedron(cutter, i, id[n])) continue;
+    for (int k = 0; k < 8; ++k) __builtin_prefetch((const char *)cutter->mesh.vertices.data + id[n][k] * cutter->mesh.vertices.stride);
+    way[n] = tc_hexahedra_find(&cutter->hexahedra, id[n]);
+    at[n] = i;
+    ++n;
+  }
+  for (int m = 0; m < n; ++m) {
+    double p[8][3];
+    for (int k = 0; k < 8; ++k) tc_mesh_vertex(&cutter->mesh, id[m][k], p[k]);
+    const bool fits = tc_hexahedra_fits(&cutter->hexahedra, way[m], (const double(*)[3])p);
+    cutter->ways[at[m]] = (uint8_t)(fits ? 1 + way[m] : 0);
+    block->tetrahedra += fits ? cutter->hexahedra.count[way[m]] : 0;
+    block->info.cells += fits;
+  }
+}
+
+static void write_hexahedron(const Cutter *cutter, int64_t i, Block *block) {
+  uint32_t id[8];
+  read_hexahedron(cutter, i, id);
+  const int way = cutter->ways[i] - 1, count = cutter->hexahedra.count[way];
+  TetcastCut *cut = cutter->cut;
+  for (int t = 0; t < count; ++t) {
+    int32_t *to = cut->tetrahedra[block->tetrahedra + t];
+    const uint8_t *corner = cutter->hexahedra.tet[way][t];
+    for (int k = 0; k < 4; ++k) to[k] = (int32_t)id[corner[k]];
+  }
+  for (int t = 0; cut->sources && t < count; ++t) cut->sources[block->tetrahedra + t] = (int32_t)i;
+  block->tetrahedra += count;
+}
+
 static bool cut_block(void *data, int64_t begin, int64_t end, int worker) {
   Cutter *cutter = data;
   Scratch *scratch = &cutter->scratch[worker];
   Block block = cutter->blocks[begin / GRAIN];
   for (int64_t i = begin; i < end; ++i) {
+    if (!cutter->writes && (i - begin) % BATCH == 0) count_hexahedra(cutter, i, i + BATCH < end ? i + BATCH : end, &block);
+    if (cutter->ways[i]) {
+      if (cutter->writes) write_hexahedron(cutter, i, &block);
+      continue;
+    }
     Cell cell;
     const Fault fault = load(cutter, i, scratch, &cell);
     if (fault == NOTHING) continue;
@@ -525,6 +618,9 @@ static TetcastStatus run(Cutter *cutter, int threads) {
   }
   if (!tc_allocate_array(context, (void **)&cutter->blocks, blocks, sizeof *cutter->blocks, "cells")) return TETCAST_ERROR_MEMORY;
   memset(cutter->blocks, 0, (size_t)blocks * sizeof *cutter->blocks);
+  if (!tc_allocate_array(context, (void **)&cutter->ways, cutter->cell_count, 1, "cells")) return TETCAST_ERROR_MEMORY;
+  memset(cutter->ways, 0, (size_t)cutter->cell_count);
+  tc_hexahedra_make(&cutter->hexahedra);
   TetcastStatus status = add_lattices(cutter);
   if (!status) status = pass(cutter);
   if (!status) status = lay_out(cutter);
@@ -558,6 +654,7 @@ TetcastStatus tc_cells_cut(TetcastContext *context, const TetcastCellsDesc *desc
   for (int i = 0; cutter.scratch && i < threads; ++i) tc_release(context, cutter.scratch[i].memory);
   tc_release(context, cutter.scratch);
   tc_release(context, cutter.blocks);
+  tc_release(context, cutter.ways);
   if (status) {
     tc_cut_destroy(cut);
     return status;

@@ -58,6 +58,9 @@ typedef struct TcTets {
 /* Cuts the cell at pieces->id and p. */
 void tc_cut_shape(const TcShape *shape, TcTets *pieces);
 
+/* The tetrahedra of a hexahedron from its corner `first`, of the smallest vertex, by the indices alone. */
+int64_t tc_cone_hexahedron(const uint32_t *id, uint32_t first, uint32_t (*tet)[4]);
+
 /* Whether tetrahedra of both signs overlap by more than coordinates of single precision explain. */
 bool tc_is_folded(double positive, double negative);
 bool tc_has_twice(const uint32_t *id, uint32_t count);
@@ -69,6 +72,22 @@ typedef struct TcEdge {
   bool backward;
 } TcEdge;
 bool tc_orient_faces(const TcShape *shape, TcEdge *edge, uint32_t *link);
+
+/* ── hexahedra by table (cut_hexahedron.c) ── */
+
+typedef struct TcHexahedra {
+  uint8_t face[8][3][4];  /* the faces without a corner, from the corner opposite it on */
+  uint8_t third[8];       /* the neighbour of that opposite corner that the first of these faces has not */
+  uint8_t quad[64][3][4]; /* these from an end of their diagonal on */
+  uint8_t count[64];      /* of tetrahedra */
+  uint8_t tet[64][6][4];  /* their corners */
+} TcHexahedra;
+
+void tc_hexahedra_make(TcHexahedra *table);
+/* Which of the 64 ways. */
+int tc_hexahedra_find(const TcHexahedra *table, const uint32_t id[8]);
+/* Whether all the tetrahedra are the right way round, none of them flat. */
+bool tc_hexahedra_fits(const TcHexahedra *table, int way, const double (*p)[3]);
 
 /* ── vertices that are added (cut_points.c) ── */
 

@@ -73,7 +73,7 @@ static void measure(TcTets *pieces) {
     const double volume = (x[1] * y[2] - x[2] * y[1]) * z[0] + (x[2] * y[0] - x[0] * y[2]) * z[1] + (x[0] * y[1] - x[1] * y[0]) * z[2];
     pieces->positive += volume > 0 ? volume : 0;
     pieces->negative -= volume < 0 ? volume : 0;
-    smallest = fmin(smallest, fabs(volume));
+    smallest = fabs(volume) < smallest ? fabs(volume) : smallest;
   }
   pieces->flat = smallest <= fold_limit * (pieces->positive + pieces->negative);
 }
@@ -82,18 +82,17 @@ bool tc_is_folded(double positive, double negative) { return fmin(positive, nega
 
 /* Where none of the diagonals goes through the corner opposite the one that the pyramids start from, that corner can be cut off: five
  * tetrahedra instead of six. */
-static void cut_corner_off(TcTets *pieces) {
+static int64_t cut_corner_off(int64_t count, uint32_t (*tet)[4]) {
   static const uint32_t opposite[8] = {6, 7, 4, 5, 2, 3, 0, 1};
-  uint32_t(*tet)[4] = pieces->tet;
-  if (pieces->count != 6) return;
+  if (count != 6) return count;
   const uint32_t far = opposite[tet[0][0]];
   int found[3], n = 0;
   for (int i = 0; i < 6; ++i) {
     if (tet[i][1] != far && tet[i][2] != far && tet[i][3] != far) continue;
-    if (n == 3) return;
+    if (n == 3) return count;
     found[n++] = i;
   }
-  if (n != 3) return;
+  if (n != 3) return count;
   const uint32_t *t = tet[found[0]], *other = tet[found[1]];
   const int at = t[1] == far ? 1 : t[2] == far ? 2 : 3;
   const uint32_t x = t[at % 3 + 1], y = t[(at + 1) % 3 + 1];
@@ -104,7 +103,11 @@ static void cut_corner_off(TcTets *pieces) {
     for (int k = 0; k < 4; ++k) tet[found[i]][k] = rest[i][k];
   }
   for (int k = 0; k < 4; ++k) tet[found[2]][k] = tet[5][k];
-  pieces->count = 5;
+  return 5;
+}
+
+int64_t tc_cone_hexahedron(const uint32_t *id, uint32_t first, uint32_t (*tet)[4]) {
+  return cut_corner_off(cone(&shapes[TC_HEXAHEDRON], id, first, id[first], tet), tet);
 }
 
 bool tc_has_twice(const uint32_t *id, uint32_t count) {
@@ -145,7 +148,7 @@ static void cut_from_centre(const TcShape *shape, TcTets *pieces) {
 static void cut_from_corner(const TcShape *shape, uint32_t corner, TcTets *pieces) {
   pieces->centred = false;
   pieces->count = cone(shape, pieces->id, corner, pieces->id[corner], pieces->tet);
-  if (shape->hexahedron) cut_corner_off(pieces);
+  if (shape->hexahedron) pieces->count = cut_corner_off(pieces->count, pieces->tet);
   measure(pieces);
 }
 

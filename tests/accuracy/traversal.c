@@ -120,6 +120,35 @@ static Soup soup_two(const char *name, double x, double y, double z) {
   return soup;
 }
 
+/* A cube of six cells beside one of 48, which share the corners between them: of the finer side five vertices hang in the other's face. */
+static Soup soup_hanging(void) {
+  Soup soup = soup_cube("hanging vertices", 1, 0), other = soup_cube("", 2, 0.3);
+  Cube *a = &soup.cube, *b = &other.cube;
+  int64_t number[27];
+  a->vertices = realloc(a->vertices, (size_t)(8 + 27) * 3 * sizeof *a->vertices);
+  a->values = realloc(a->values, (size_t)(8 + 27) * sizeof *a->values);
+  for (int64_t i = 0; i < 27; ++i) {
+    double p[3];
+    for (int k = 0; k < 3; ++k) p[k] = b->vertices[3 * i + k] + (k == 0);
+    number[i] = a->vertex_count;
+    for (int64_t j = 0; j < 8; ++j) {
+      if (!memcmp(&a->vertices[3 * j], p, sizeof p)) number[i] = j;
+    }
+    if (number[i] < a->vertex_count) continue;
+    memcpy(&a->vertices[3 * number[i]], p, sizeof p);
+    a->values[a->vertex_count++] = b->values[i];
+  }
+  assert_int_equal(a->vertex_count, 8 + 27 - 4);
+  for (int64_t i = 0; i < b->cell_count; ++i) {
+    int64_t cell[4];
+    for (int k = 0; k < 4; ++k) cell[k] = number[b->cells[4 * i + k]];
+    add_cell(a, cell);
+  }
+  cube_destroy(b);
+  soup.size[0] = 2;
+  return soup;
+}
+
 /* ── one ray three ways ── */
 
 typedef struct Caster {
@@ -395,6 +424,7 @@ static void touching(void **state) {
   run(soup_two("touching at a vertex", 1, 1, 1), 0.03);
   run(soup_two("touching along an edge", 1, 1, 0), 0.03);
   run(soup_two("touching at a face", 1, 0, 0), 0.04);
+  run(soup_hanging(), 0.04);
 }
 
 /* Cells of random vertices, overlapping, collapsed, doubled, many at a face: whatever it means, it ends, and loses no ray. */

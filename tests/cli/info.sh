@@ -59,6 +59,7 @@ contains '"step": 1,'
 refuse 1 'has no time step 2; there are steps 0 to 1' info two.pvd --time 2
 refuse 1 'has no time 1; the nearest is 0.5, of step 0' info two.pvd --time t=1
 refuse 2 'time' info two.pvd --time soon
+refuse 2 'expected a step' info two.pvd --time all
 cat >two.vtm <<'END'
 <VTKFile type="vtkMultiBlockDataSet" version="1.0"><vtkMultiBlockDataSet>
 <Block name="body"><DataSet name="small" file="cube.vtu"/><DataSet name="large" file="late.vtu"/></Block>
@@ -73,6 +74,24 @@ contains '"volume": 1.0,'
 accept info cube.vtu --merge-tolerance 0
 contains 'boundary faces +12'
 refuse 2 'merge-tolerance' info cube.vtu --merge-tolerance=-1
+
+# Curved cells in finer pieces: 1, 8 and 27 tetrahedra of one of second order, whose volume comes closer to the true one.
+gmsh_curved curved.msh
+accept info curved.msh
+contains 'quadratic tetrahedron +1'
+contains 'curved cells +1, edges in 2$'
+contains 'tetrahedra +8$'
+accept info curved.msh --subdivide 0
+contains 'tetrahedra +8$'
+accept info curved.msh --subdivide 1
+contains 'edges in 1$'
+contains 'tetrahedra +1$'
+contains 'volume +0.166666667$'
+accept info curved.msh --subdivide 3 --json
+contains '"tetrahedra": 27,'
+accept info hexahedron.vtu --subdivide 3
+contains 'volume +1$'
+for wrong in 17 -1 2.5 many ''; do refuse 2 'subdivide' info curved.msh --subdivide "$wrong"; done
 
 if [ -c /dev/full ]; then
   "$tetcast" info cube.vtu >/dev/full 2>err && fail 'exit code 0 with a full standard output'

@@ -132,4 +132,49 @@ vtu() {
 </Piece></UnstructuredGrid></VTKFile>
 END
 }
+# gmsh_curved FILE: a tetrahedron of second order, one of whose edges bulges.
+gmsh_curved() {
+  cat >"$1" <<'END'
+$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+10
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1
+5 .5 0 0
+6 .7 .7 0
+7 0 .5 0
+8 0 0 .5
+9 0 .5 .5
+10 .5 0 .5
+$EndNodes
+$Elements
+1
+1 11 2 1 1 1 2 3 4 5 6 7 8 9 10
+$EndElements
+$NodeData
+1
+"s"
+1
+0
+3
+0
+1
+10
+1 0
+2 1
+3 2
+4 3
+5 1
+6 2
+7 2
+8 1
+9 2
+10 3
+$EndNodeData
+END
+}
 five_tetrahedra='0 1 3 4;1 2 3 6;1 4 5 6;3 4 6 7;1 3 4 6'

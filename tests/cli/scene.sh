@@ -36,6 +36,16 @@ for key in input output array transfer color extinction camera eye target up fov
 done
 contains '"input": "../../data/cube.vtu"'
 
+gmsh_curved data/curved.msh
+accept render data/curved.msh -o plain.tif --size 53x37 --pixel-type double
+accept render data/curved.msh -o one.tif --size 53x37 --pixel-type double --subdivide 5 --save-scene scenes/deep/s.json
+differ plain.tif one.tif
+output=$(cat scenes/deep/s.json)
+contains '"subdivide": 5'
+(cd / && "$tetcast" render --scene "$work/scenes/deep/s.json") || fail "rendering the scene with curved cells again"
+same one.tif scenes/deep/one.tif
+refuse 2 'subdivide' render data/curved.msh -o one.tif --subdivide 17
+
 # The picture is of the default pixel type, too.
 accept render data/cube.vtu -o p.png --size 53x37 --save-scene p.json --background 0.2,0.1,0
 cp p.png first.png

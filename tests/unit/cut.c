@@ -472,6 +472,24 @@ static void test_refused(void **state) {
     assert_refused(&fixture, &good, TETCAST_ERROR_DATA, "cell 1 names a vertex");
   }
   nodes[9] = 1;
+  /* A cube that nothing else is wrong with: what is beyond the vertices would make one. */
+  const double cube[9][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0, 1, 0}};
+  int32_t narrow[8] = {0, 1, 2, 8, 4, 5, 6, 7};
+  desc = good;
+  desc.vertices.data = cube;
+  for (int i = 0; i < 4; ++i) {
+    nodes[3] = bad_nodes[i];
+    assert_refused(&fixture, &desc, TETCAST_ERROR_DATA, "cell 0 names a vertex");
+  }
+  nodes[3] = 3;
+  desc.types = NULL;
+  desc.offsets.count = 0;
+  desc.type = TETCAST_CELL_HEXAHEDRON;
+  desc.connectivity = (TetcastArray){narrow, TETCAST_TYPE_INT32, 1, 0};
+  for (int i = 0; i < 2; ++i) {
+    narrow[3] = i ? -1 : 8;
+    assert_refused(&fixture, &desc, TETCAST_ERROR_DATA, "cell 0 names a vertex");
+  }
   const struct {
     int64_t *at, value;
     const char *words;

@@ -7,6 +7,7 @@
 
 #include "cases.h"
 #include "damage.h"
+#include "gmsh_file.h"
 #include "samples.h"
 
 /* A reader that does not come back within this many seconds hangs. */
@@ -137,6 +138,27 @@ static void test_tetgen(void **state) {
   damage(fixture, "t.ele", "t.node", 60);
 }
 
+static void test_gmsh(void **state) {
+  Fixture *fixture = *state;
+  static const double p[5][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+  static const int64_t node[5] = {1, 2, 3, 4, 5}, element[2] = {8, 9};
+  static const GmshElement elements[2] = {{8, 4, 4, 1, 3, node}, {9, 4, 4, 1, 3, node + 1}};
+  static const double values[8] = {1, 2, 3, 4, 5, 6, 7, 8};
+  for (int version = 2; version <= 4; version += 2) {
+    for (int encoding = GMSH_TEXT; encoding <= GMSH_BIG; ++encoding) {
+      GmshFile to = gmsh_open(in_folder(fixture, "g.msh"), version, (GmshEncoding)encoding);
+      gmsh_entities(&to, 1, &elements[0].group);
+      gmsh_nodes(&to, 5, node, p, 0);
+      gmsh_elements(&to, 2, elements);
+      gmsh_data(&to, "NodeData", "a", 0, 1, 5, node, 0, values);
+      gmsh_data(&to, "ElementData", "b", 1, 3, 2, element, 0, values);
+      gmsh_data(&to, "ElementNodeData", "c", 0, 1, 2, element, 4, values);
+      fclose(to.file);
+      damage(fixture, "g.msh", "g.msh", 40);
+    }
+  }
+}
+
 /* Those whose reader is VTK's, in a plugin. */
 static void test_ensight(void **state) {
   Fixture *fixture = *state;
@@ -204,7 +226,7 @@ static void test_memory(void **state) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down_streams)
 
 int main(void) {
-  const struct CMUnitTest tests[] = {TEST(test_structured), TEST(test_lists), TEST(test_tetgen), TEST(test_ensight), TEST(test_openfoam),
+  const struct CMUnitTest tests[] = {TEST(test_structured), TEST(test_lists), TEST(test_tetgen), TEST(test_gmsh), TEST(test_ensight), TEST(test_openfoam),
                                      TEST(test_exodus),     TEST(test_cgns),  TEST(test_vtkhdf), TEST(test_memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

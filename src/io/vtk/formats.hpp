@@ -22,6 +22,7 @@ void read_vtkhdf(const Reading &reading, Contents *contents);
 void read_ensight(const Reading &reading, Contents *contents);
 void read_cgns(const Reading &reading, Contents *contents);
 void read_openfoam(const Reading &reading, Contents *contents);
+void read_gmsh(const Reading &reading, Contents *contents);
 void read_tetgen(const Reading &reading, Contents *contents); // .node with .ele
 
 } // namespace tcv

@@ -39,15 +39,8 @@ bool Scanner::at_end() {
 
 double Scanner::number(const char *what) {
   const std::string text = word();
-  const char *first = text.c_str() + (text[0] == '+'), *last = text.c_str() + text.size();
-  double value = 0;
-  const auto [end, error] = std::from_chars(first, last, value);
-  // Beyond double's range: tiny is zero, huge is an infinity that is refused later.
-  if (error == std::errc::result_out_of_range) {
-    const bool tiny = text.find("e-") != std::string::npos || text.find("E-") != std::string::npos;
-    return tiny ? 0 : HUGE_VAL;
-  }
-  if (error != std::errc() || end != last || first == last) {
+  double value;
+  if (!parse_number(text.data(), text.data() + text.size(), &value)) {
     fail(TETCAST_ERROR_DATA, "%s: line %d: %s expected, not '%.40s'", path_, line_, what, text.c_str());
   }
   return value;
