@@ -134,6 +134,22 @@ int render_create_frame(Run *run) {
   return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }
 
+/* Radiance has no scale of its own: what an integer pixel makes of it may be all white or all black. */
+static void check_brightness(const Run *run) {
+  if (!render_options_given(&run->options, OPTION_EMISSION) || render_options_floating(&run->options))
+    return;
+  const float *pixels = tetcast_frame_pixels(run->frame);
+  const int64_t count = tetcast_frame_width(run->frame) * tetcast_frame_height(run->frame);
+  float brightest = 0;
+  for (int64_t i = 0; i < 4 * count; i++)
+    if (i % 4 < 3 && pixels[i] > brightest)
+      brightest = pixels[i];
+  if (brightest > 1)
+    cli_warning("radiance up to %g: above 1 all is white in integer pixels; .exr and .tif hold it as it is", (double)brightest);
+  else if (brightest > 0 && brightest < 1.0f / 255)
+    cli_warning("radiance up to %g: below 1/255 all is black in integer pixels; .exr and .tif hold it as it is", (double)brightest);
+}
+
 int render_frame(Run *run) {
   RunStats *stats = &run->stats;
   stats->threads = tetcast_context_threads(run->stage.context);
@@ -160,28 +176,12 @@ int render_frame(Run *run) {
     cli_warning(
         "%lld of %lld rays were lost on their way through the mesh: the picture has faults there, please report this",
         (long long)stats->render.lost, (long long)stats->render.rays);
+  check_brightness(run);
   return cli_verdict(CLI_DONE);
-}
-
-/* Radiance has no scale of its own: what an integer pixel makes of it may be all white or all black. */
-static void check_brightness(const Run *run) {
-  if (!render_options_given(&run->options, OPTION_EMISSION) || render_options_floating(&run->options))
-    return;
-  const float *pixels = tetcast_frame_pixels(run->frame);
-  const int64_t count = tetcast_frame_width(run->frame) * tetcast_frame_height(run->frame);
-  float brightest = 0;
-  for (int64_t i = 0; i < 4 * count; i++)
-    if (i % 4 < 3 && pixels[i] > brightest)
-      brightest = pixels[i];
-  if (brightest > 1)
-    cli_warning("radiance up to %g: above 1 all is white in integer pixels; .exr and .tif hold it as it is", (double)brightest);
-  else if (brightest > 0 && brightest < 1.0f / 255)
-    cli_warning("radiance up to %g: below 1/255 all is black in integer pixels; .exr and .tif hold it as it is", (double)brightest);
 }
 
 int render_write_image(Run *run, const char *path) {
   const Stage *stage = &run->stage;
-  check_brightness(run);
   render_await_image(run);
   const double start = cli_seconds();
   const TetcastStatus status = run->image->image_write(stage->context, path, run->frame, &run->image_desc);

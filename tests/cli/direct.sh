@@ -25,6 +25,7 @@ accept render cube.vtu -o red.exr --extinction s --emission v:0 --size 61x47
 accept render cube.vtu -o color.exr --extinction s --emission v --size 61x47
 differ red.exr color.exr colour
 warn 'above 1 all is white' render cube.vtu -o bright.png --emission s --size 30x20
+refuse 1 'above 1 all is white' render cube.vtu -o strict.png --emission s --size 30x20 --strict
 accept render cube.vtu -o bright.png --emission s --size 30x20 --quiet
 accept render cube.vtu -o bright.exr --emission s --size 30x20
 
@@ -70,6 +71,20 @@ echo '{"input": "cube.vtu", "emission": "s", "groups": 1}' >bad.json
 refuse 1 'groups: expected true or false' render --scene bad.json
 echo '{"input": "cube.vtu", "emission": "s", "array": "s"}' >bad.json
 refuse 1 'exclude each other' render --scene bad.json
+
+# A series, and cells made points.
+cat >series.pvd <<END
+<?xml version="1.0"?>
+<VTKFile type="Collection" version="0.1"><Collection>
+<DataSet timestep="0" file="cube.vtu"/><DataSet timestep="0.5" file="nan.vtu"/><DataSet timestep="1" file="cube.vtu"/>
+</Collection></VTKFile>
+END
+warn 'array s: 2 values' render series.pvd -o 'series%d.png' --extinction s --emission s --size 61x47 --pixel-type uint16
+same series0.png dust.png 'first step'
+same series2.png dust.png 'last step'
+differ series1.png dust.png 'step between'
+accept render cube.vtu -o points.png --extinction 'c d' --size 61x47 --cell-to-point
+differ points.png cells.png --cell-to-point
 
 # What is wrong.
 refuse 1 "no array 'kappa'" render cube.vtu -o a.png --extinction kappa
