@@ -185,7 +185,8 @@ static void test_second_order(void **state) {
       assert_int_equal(tetcast_dataset_mesh(dataset, &mesh), TETCAST_OK);
       assert_int_equal(tetcast_mesh_health(fixture->context, mesh, &health), TETCAST_OK);
       const TetcastCutInfo info = tetcast_dataset_cut(dataset);
-      if (fabs(health.volume / second_order[i].volume - 1) > 1e-12 || health.inverted_cells || info.folded || info.segments[0] != 2) {
+      if (fabs(health.volume / second_order[i].volume - 1) > 1e-12 || health.inverted_cells || health.degenerate_cells || health.unused_vertices ||
+          info.folded || info.segments[0] != 2) {
         print_error("type %d: volume %g, %d inverted\n", second_order[i].type, health.volume, (int)health.inverted_cells);
         fail();
       }
