@@ -315,7 +315,7 @@ const double *tetcast_transfer_function_extinction(const TetcastTransferFunction
 TetcastCamera tetcast_camera_default(const double bounds[6], double aspect) { return tc_camera_default(bounds, aspect); }
 
 TetcastFrameDesc tetcast_frame_desc_default(void) {
-  return (TetcastFrameDesc){.cookie = TC_COOKIE, .type = TETCAST_TYPE_FLOAT64};
+  return (TetcastFrameDesc){.cookie = TC_COOKIE, .type = TETCAST_TYPE_FLOAT64, .groups = 1};
 }
 
 TetcastStatus tetcast_frame_create(TetcastContext *context, const TetcastFrameDesc *desc, TetcastFrame **frame) {
@@ -328,8 +328,11 @@ TetcastStatus tetcast_frame_create(TetcastContext *context, const TetcastFrameDe
                     largest);
   }
   if (!tc_type_is_float(desc->type)) return ARGUMENT(context, "a frame's type must be float32 or float64");
-  if (desc->channels & ~(uint32_t)TETCAST_CHANNEL_ERROR) {
+  if (desc->channels >> TC_CHANNELS) {
     return ARGUMENT(context, "a frame with channels 0x%" PRIx32 ": some are unknown", desc->channels);
+  }
+  if (desc->groups < 1 || desc->groups > TETCAST_MAX_GROUPS) {
+    return ARGUMENT(context, "a frame of %d groups: must be in [1, %d]", desc->groups, TETCAST_MAX_GROUPS);
   }
   const int64_t row = desc->width * 4 * (int64_t)tc_type_size(desc->type);
   if (desc->pixels && desc->row_stride != 0 && desc->row_stride < row && desc->row_stride > -row) {
@@ -349,9 +352,8 @@ int64_t tetcast_frame_height(const TetcastFrame *frame) { return frame->height; 
 TetcastType tetcast_frame_type(const TetcastFrame *frame) { return frame->type; }
 const void *tetcast_frame_pixels(const TetcastFrame *frame) { return frame->pixels; }
 int64_t tetcast_frame_row_stride(const TetcastFrame *frame) { return frame->row_stride; }
-const void *tetcast_frame_channel(const TetcastFrame *frame, TetcastChannel channel) {
-  return channel == TETCAST_CHANNEL_ERROR ? frame->error : NULL;
-}
+int tetcast_frame_groups(const TetcastFrame *frame) { return frame->groups; }
+const void *tetcast_frame_channel(const TetcastFrame *frame, TetcastChannel channel) { return tc_frame_channel(frame, channel); }
 
 /* ── scene ── */
 
@@ -374,6 +376,34 @@ TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene, const Tet
   return tc_scene_set_transfer_function(scene, transfer_function);
 }
 
+TetcastCoefficientsDesc tetcast_coefficients_desc_default(void) { return (TetcastCoefficientsDesc){.cookie = TC_COOKIE}; }
+
+static TetcastStatus check_fields(TetcastContext *context, const TetcastField *const *fields, int count, const char *what) {
+  if (count < 0 || count > TETCAST_MAX_GROUPS) return ARGUMENT(context, "%s of %d groups: at most %d are possible", what, count, TETCAST_MAX_GROUPS);
+  if (count > 0 && !fields) return ARGUMENT(context, "%s: no fields", what);
+  for (int i = 0; i < count; ++i) {
+    if (!fields[i]) return ARGUMENT(context, "%s: the field of group %d is NULL", what, i);
+  }
+  return TETCAST_OK;
+}
+
+TetcastStatus tetcast_scene_set_coefficients(TetcastScene *scene, const TetcastCoefficientsDesc *desc) {
+  if (!scene) return TETCAST_ERROR_ARGUMENT;
+  TetcastContext *context = scene->context;
+  CHECK_DESC(context, desc);
+  TetcastStatus status = check_fields(context, desc->extinction, desc->extinction_count, "extinction");
+  if (!status) status = check_fields(context, desc->emission, desc->emission_count, "emission");
+  if (status) return status;
+  if (desc->extinction_count == 0 && desc->emission_count == 0) return ARGUMENT(context, "coefficients: neither extinction nor emission");
+  if (desc->extinction_count > 1 && desc->emission_count > 1 && desc->extinction_count != desc->emission_count) {
+    return ARGUMENT(context, "an extinction of %d groups with an emission of %d: they must be as many, or one of the two for all",
+                    desc->extinction_count, desc->emission_count);
+  }
+  return tc_scene_set_coefficients(scene, desc);
+}
+
+int tetcast_scene_groups(const TetcastScene *scene) { return scene->coefficients ? scene->coefficients->groups : 0; }
+
 TetcastRenderDesc tetcast_render_desc_default(void) { return (TetcastRenderDesc){.cookie = TC_COOKIE, .integrator_n = 1, .samples = 1}; }
 
 static TetcastStatus check_camera(TetcastContext *context, const TetcastCamera *camera) {
@@ -392,6 +422,34 @@ static TetcastStatus check_camera(TetcastContext *context, const TetcastCamera *
     }
   } else {
     return ARGUMENT(context, "camera: unknown projection %d", (int)camera->projection);
+  }
+  return TETCAST_OK;
+}
+
+/* Whether the scene is complete, and is one that fills the frame's channels. */
+static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderDesc *desc, const TetcastFrame *frame) {
+  TetcastContext *context = scene->context;
+  bool direct = false, grouped = false;
+  for (int i = 0; i < TC_CHANNELS; ++i) {
+    const TetcastChannel channel = (TetcastChannel)(1 << i);
+    if (!frame->channel[i] || channel == TETCAST_CHANNEL_ERROR) continue;
+    direct = true;
+    grouped = grouped || channel != TETCAST_CHANNEL_PATH_LENGTH;
+  }
+  if (scene->coefficients) {
+    if (desc->integrator != TETCAST_INTEGRATOR_EXACT) return ARGUMENT(context, "with coefficients there is only the exact integrator");
+    if (frame->channel[0]) return ARGUMENT(context, "with coefficients there is no channel for the error");
+    if (grouped && frame->groups != scene->coefficients->groups) {
+      return ARGUMENT(context, "a frame of %d groups, but the scene has %d", frame->groups, scene->coefficients->groups);
+    }
+    return TETCAST_OK;
+  }
+  if (!scene->volume->has_field) return ARGUMENT(context, "the volume has no field yet");
+  if (!scene->transfer) return ARGUMENT(context, "the scene has no transfer function yet");
+  if (direct) return ARGUMENT(context, "with a transfer function there is only the channel for the error");
+  if (desc->integrator != TETCAST_INTEGRATOR_EXACT && (desc->tolerance > 0 || frame->channel[0])) {
+    return ARGUMENT(context, "only the exact integrator knows its error: no %s with another",
+                    frame->channel[0] ? "channel for the error" : "tolerance");
   }
   return TETCAST_OK;
 }
@@ -416,13 +474,8 @@ TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamer
   if (!(desc->tolerance >= 0) || !isfinite(desc->tolerance)) {
     return ARGUMENT(context, "a tolerance of %g: must be 0 or a positive number", desc->tolerance);
   }
-  if (desc->integrator != TETCAST_INTEGRATOR_EXACT && (desc->tolerance > 0 || frame->error)) {
-    return ARGUMENT(context, "only the exact integrator knows its error: no %s with another",
-                    frame->error ? "channel for the error" : "tolerance");
-  }
-  if (!scene->volume->has_field) return ARGUMENT(context, "the volume has no field yet");
-  if (!scene->transfer) return ARGUMENT(context, "the scene has no transfer function yet");
-  const TetcastStatus status = check_camera(context, camera);
+  TetcastStatus status = check_scene(scene, desc, frame);
+  if (!status) status = check_camera(context, camera);
   /* The first frame after a change prepares the scene, behind a lock: nothing that the caller could see. */
   return status ? status : tc_scene_render((TetcastScene *)scene, camera, desc, frame, stats);
 }

@@ -28,6 +28,10 @@ typedef struct TetcastDatasetDesc {
   double time;       /* the step at this time instead; NaN: none asked for */
   double merge_tolerance; /* negative: only points of different pieces are merged, where they coincide exactly. Else all points no
                              further than this apart, in the file's unit of length; 0: all that coincide exactly */
+  const char *only;       /* of the arrays none is read but those that this selector may name, see tetcast_dataset_field(), where the format
+                           * lets one choose (VTK XML, Exodus); NULL: all */
+  bool cell_to_point;     /* fields of cell arrays are of points: at each the plain mean over the file's cells that use it, component by
+                           * component; only volumetric cells count, and not those whose value is NaN or infinite */
   int subdivision;        /* what each edge of a curved cell is cut into, to TETCAST_MAX_SUBDIVISION; 0: as its nodes lie */
 } TetcastDatasetDesc;
 
@@ -39,14 +43,14 @@ TETCAST_API TetcastDatasetDesc tetcast_dataset_desc_default(void);
 TETCAST_API bool tetcast_dataset_format(int i, const char **name, const char **extensions);
 
 /* Reads a file in one of these formats; which one is told by content, then by extension. desc NULL: the default. TETCAST_ERROR_IO:
- * can't be opened. TETCAST_ERROR_DATA: truncated, damaged, no mesh, no cells, only surface cells, non-finite coordinates, indices out of
- * range. TETCAST_ERROR_ARGUMENT: has no such block or step; the message lists those there are. The reader library's own complaints become
+ * can't be opened. TETCAST_ERROR_DATA: truncated, damaged, no mesh, no cells, only surface cells, indices out of range. TETCAST_ERROR_ARGUMENT: has no such block or step; the message lists those there are. The reader library's own complaints become
  * part of the message. Formats that VTK reads without care are tried in a child process first, which may crash.
  *
  * Structured grids become hexahedra. Of a file in pieces or blocks, ghost cells (vtkGhostType, vtkGhostLevels: copies of another piece's
  * cells) and blanked ones are left out, as are pieces without volume, and coincident points of different pieces become one, so that the
  * mesh is that of the whole. Where pieces disagree about a point's value, the piece first in the file wins that does not call the point
- * a duplicate; where some pieces lack an array, it is NaN, which is drawn transparent. A warning says how often that was so. */
+ * a duplicate; where some pieces lack an array, it is NaN, which is drawn transparent. Points with coordinates that
+ * are NaN or infinite are left out, and so are the cells that use them. A warning says how often each of these was so. */
 TETCAST_API TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, const TetcastDatasetDesc *desc,
                                                TetcastDataset **dataset);
 
@@ -54,7 +58,8 @@ TETCAST_API TetcastStatus tetcast_dataset_read(TetcastContext *context, const ch
 TETCAST_API void tetcast_dataset_destroy(TetcastDataset **dataset);
 
 /* How many cells of type i = 0, 1, … the file has, largest count first; name e.g. "tetrahedron", "hexahedron", "triangle", static
- * storage. False beyond the last. Counted as they are in the file, before anything is cut, but without ghosts. */
+ * storage. False beyond the last. Counted as they are in the file, before anything is cut, but without ghosts
+ * and those left out for their coordinates. */
 TETCAST_API bool tetcast_dataset_cell_type(const TetcastDataset *dataset, int i, const char **name, int64_t *count);
 
 typedef struct TetcastDatasetArray {
@@ -79,6 +84,8 @@ typedef struct TetcastDatasetPieces {
   int64_t ghost_points;     /* points left out that only those used */
   int64_t merged_points;    /* points that became one with another */
   int64_t differing_points; /* of those the ones at which a point array had several values */
+  int64_t nonfinite_points; /* points left out, as a coordinate is NaN or infinite */
+  int64_t nonfinite_cells;  /* cells left out, as they use such points */
 } TetcastDatasetPieces;
 
 /* What became of the pieces. NULL: all 0. */
@@ -104,7 +111,8 @@ TETCAST_API TetcastStatus tetcast_dataset_mesh(const TetcastDataset *dataset, Te
  * an array of several is taken by magnitude. NULL: the active scalars of the points, of the cells, else the first point array of one
  * component, the first cell array of one component, the first array; arrays that number points or cells (global ids) only when there is
  * nothing else. A file without arrays is TETCAST_ERROR_DATA. An unknown name or component is TETCAST_ERROR_ARGUMENT and the
- * message lists those there are. Cell arrays follow the tetrahedra the cells were cut into. The dataset must outlive the field,
+ * message lists those there are. Cell arrays follow the tetrahedra the cells were cut into, or are
+ * averaged if the description asked for that. The dataset must outlive the field,
  * which the caller destroys. `name` (may be NULL) receives the selector that selects the same again, valid while the dataset lives. */
 TETCAST_API TetcastStatus tetcast_dataset_field(const TetcastDataset *dataset, const char *selector, TetcastField **field,
                                                 const char **name);

@@ -21,8 +21,18 @@ typedef struct TetcastFrame TetcastFrame;
 typedef enum TetcastChannel {
   /* A bound on the error of each of the pixel's four channels: what the tolerance let go, rounding in the integral and in the sum
    * over a ray's segments, rounding to the frame's type. Where the ray meets the faces is taken as computed. */
-  TETCAST_CHANNEL_ERROR = 1
+  TETCAST_CHANNEL_ERROR = 1,
+
+  /* Of a scene with coefficients (scene.h), for each group: */
+  TETCAST_CHANNEL_RADIANCE = 2,      /* unit of the emission times length */
+  TETCAST_CHANNEL_OPTICAL_DEPTH = 4, /* ∫ κ dt along the ray, through all of the mesh */
+  TETCAST_CHANNEL_TRANSMITTANCE = 8, /* exp(−optical depth) */
+
+  /* Of a scene with coefficients: length of the ray's parts in the mesh's cells, in its unit; cells that overlap count each. */
+  TETCAST_CHANNEL_PATH_LENGTH = 16
 } TetcastChannel;
+
+#define TETCAST_MAX_GROUPS 256
 
 typedef struct TetcastFrameDesc {
   uint32_t cookie;
@@ -31,6 +41,7 @@ typedef struct TetcastFrameDesc {
   void *pixels;          /* [height][width][4] of `type`, borrowed while the frame lives; NULL: the frame allocates */
   int64_t row_stride;    /* bytes from row to row of `pixels`; 0: rows lie next to each other */
   uint32_t channels;     /* TetcastChannel bits; default 0. The frame allocates these */
+  int groups;            /* of the channels that have one for each, in [1, TETCAST_MAX_GROUPS]; default 1 */
 } TetcastFrameDesc;
 
 TETCAST_API TetcastFrameDesc tetcast_frame_desc_default(void);
@@ -46,8 +57,10 @@ TETCAST_API TetcastType tetcast_frame_type(const TetcastFrame *frame);
 TETCAST_API const void *tetcast_frame_pixels(const TetcastFrame *frame);
 TETCAST_API int64_t tetcast_frame_row_stride(const TetcastFrame *frame); /* bytes, never 0 */
 
-/* The values of one channel, [height][width] of the frame's type, rows next to each other, valid while the frame lives; NULL if
- * the frame was made without it. */
+TETCAST_API int tetcast_frame_groups(const TetcastFrame *frame);
+
+/* The values of one channel, [height][width] of the frame's type, [height][width][groups] for those of groups, rows next to each other, valid
+ * while the frame lives; NULL if the frame was made without it. */
 TETCAST_API const void *tetcast_frame_channel(const TetcastFrame *frame, TetcastChannel channel);
 
 #ifdef __cplusplus

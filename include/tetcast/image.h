@@ -27,14 +27,16 @@ typedef struct TetcastImageDesc {
   TetcastPixelType pixel_type;
   double background[4]; /* red, green, blue, alpha in [0, 1], not premultiplied: integer pixels are composited over it; floating-point
                          * pixels hold the frame as it is, premultiplied, without background */
+  int channels_only;    /* not 0: the frame's channels without red, green, blue, alpha; it must have some. Default 0 */
 } TetcastImageDesc;
 
 TETCAST_API TetcastImageDesc tetcast_image_desc_default(void);
 
 /* Writes the frame; the format is told by the path's extension: .png .exr .tif .tiff .jpg .jpeg, also .bmp .tga .webp .ppm .hdr. A pixel
  * type the format can't hold, an unknown extension: TETCAST_ERROR_ARGUMENT. Over a translucent background, integer formats with alpha
- * hold unassociated colour. A frame's error channel becomes a fifth, named "error" in EXR, of .exr and .tif with floating-point pixels (float
- * beside half in .exr); what can't hold it: TETCAST_ERROR_ARGUMENT. The file appears whole or not at all. */
+ * hold unassociated colour. A frame's channels follow the four in .exr and .tif with floating-point pixels (float beside half in .exr), in this
+ * order and in EXR by these names: "radiance", "optical_depth", "transmittance", "path_length", "error"; of several groups
+ * "radiance.00", "radiance.01" …, as many digits as the last needs. What can't hold them: TETCAST_ERROR_ARGUMENT. The file appears whole or not at all. */
 TETCAST_API TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, const TetcastFrame *frame,
                                               const TetcastImageDesc *desc);
 

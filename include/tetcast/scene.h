@@ -6,6 +6,7 @@
 
 #include <tetcast/camera.h>
 #include <tetcast/context.h>
+#include <tetcast/field.h>
 #include <tetcast/frame.h>
 #include <tetcast/transfer_function.h>
 #include <tetcast/volume.h>
@@ -14,7 +15,7 @@
 extern "C" {
 #endif
 
-/* A volume seen through a transfer function. Several scenes may share a volume, and render at the same time. */
+/* A volume seen through a transfer function, or by coefficients of its own. Several scenes may share a volume, and render at the same time. */
 typedef struct TetcastScene TetcastScene;
 
 /* Makes a scene; the volume is referred to and must outlive it. */
@@ -24,8 +25,33 @@ TETCAST_API TetcastStatus tetcast_scene_create(TetcastContext *context, const Te
 TETCAST_API void tetcast_scene_destroy(TetcastScene **scene);
 
 /* Sets or replaces the transfer function; what is needed of it is copied. Must not run while this scene renders. On error
- * the scene keeps its former one. */
+ * the scene keeps its former one, or its coefficients. */
 TETCAST_API TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer_function);
+
+/* Extinction κ and emission j as they are, for one or several groups (of wavelength, of energy, …). Along a ray, each group has
+ *
+ *     radiance ∫ j(t) exp(−∫₀ᵗ κ) dt,   optical depth τ = ∫ κ dt,   transmittance e^−τ,
+ *
+ * κ in 1/length, in the mesh's unit, j in radiance per length. Of points they are linear in each tetrahedron, of cells constant.
+ * Without extinction nothing is absorbed; without emission, as in radiography, there is no radiance. What isn't given isn't computed. */
+typedef struct TetcastCoefficientsDesc {
+  uint32_t cookie;
+  const TetcastField *const *extinction; /* [extinction_count], one scalar each: ≥ 0; above 2^1016 / largest coordinate: as that */
+  const TetcastField *const *emission;   /* [emission_count]; may be negative: what comes out is linear in it */
+  int extinction_count, emission_count;  /* 0: none; 1: the same for all groups; else the number of groups, to TETCAST_MAX_GROUPS */
+  const char *extinction_name, *emission_name; /* for messages; NULL: "extinction", "emission" */
+} TetcastCoefficientsDesc;
+
+TETCAST_API TetcastCoefficientsDesc tetcast_coefficients_desc_default(void);
+
+/* Sets the coefficients, in place of former ones or of a transfer function; they are copied, and the volume's own field is not used.
+ * Values of magnitude above 2^1022 count as that. To a group, cells that touch a NaN or an infinite value of it are transparent and dark. A
+ * negative extinction is TETCAST_ERROR_DATA, and the message says where; a field that isn't of the volume's mesh is
+ * TETCAST_ERROR_ARGUMENT. Must not run while this scene renders. On error the scene keeps what it had. */
+TETCAST_API TetcastStatus tetcast_scene_set_coefficients(TetcastScene *scene, const TetcastCoefficientsDesc *desc);
+
+/* Number of groups of the coefficients, 0 without. */
+TETCAST_API int tetcast_scene_groups(const TetcastScene *scene);
 
 /* How the light of a cell's segment is computed. All but the exact one are what others do, there to be compared with: with n
  * samples per segment, splitting at no knots (the table does). Cell fields are constant on a segment and always exact. */
@@ -64,14 +90,20 @@ TETCAST_API TetcastRenderDesc tetcast_render_desc_default(void);
 typedef struct TetcastRenderStats {
   int64_t rays;         /* cast: width × height × samples */
   int64_t segments;     /* cells crossed over a length > 0, summed over the rays */
-  double error;         /* largest of the pixels' bounds as in TETCAST_CHANNEL_ERROR; NaN with another integrator than the exact one */
+  double error;         /* largest of the pixels' bounds as in TETCAST_CHANNEL_ERROR; NaN with another integrator than the exact one and with coefficients */
   int64_t lost;         /* rays whose walk ended before the boundary: 0, or a defect of tetcast */
   const char *isa;      /* instruction set of the kernel that ran; static storage */
   const char *precision; /* of the arithmetic: "double"; static storage */
 } TetcastRenderStats;
 
-/* Renders into every pixel of `frame`, all its channels. `desc` and `stats` may be NULL. The volume must have a field and the scene a transfer
- * function (TETCAST_ERROR_ARGUMENT). With one instruction set the result has the same bits for any
+/* Renders into every pixel of `frame`, all its channels. `desc` and `stats` may be NULL. The scene must have coefficients, or a transfer
+ * function and the volume a field (TETCAST_ERROR_ARGUMENT).
+ *
+ * With coefficients, the pixel's colour is the radiance: of three groups as red, green, blue; of one group grey; of another number
+ * grey, their mean. Its alpha is 1 − transmittance, the mean of the groups'. Only the exact integrator works with them, to rounding whatever the
+ * tolerance, and only the scalar kernel. Channels of groups need a frame with the scene's number of groups; the error channel, a transfer function.
+ *
+ * With one instruction set the result has the same bits for any
  * number of threads. After an error or a cancelled call the frame's pixels are unspecified and the scene is as before. Calls with
  * different frames may run at the same time, also on one scene. */
 TETCAST_API TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,

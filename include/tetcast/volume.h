@@ -32,7 +32,8 @@ typedef struct TetcastVolumeDesc {
 TETCAST_API TetcastVolumeDesc tetcast_volume_desc_default(void);
 
 /* Prepares a mesh. `desc` may be NULL (defaults). Cells with a vertex twice have no inside and are left out, as are
- * cells whose four vertices an earlier cell has. A mesh without cells is TETCAST_ERROR_DATA. */
+ * cells whose four vertices an earlier cell has; a warning counts them, and another one faces of three cells or more.
+ * A mesh without cells is TETCAST_ERROR_DATA. */
 TETCAST_API TetcastStatus tetcast_volume_create(TetcastContext *context, const TetcastMesh *mesh, const TetcastVolumeDesc *desc,
                                                 TetcastVolume **volume);
 

@@ -15,11 +15,27 @@
 static struct {
   bool quiet;
   const char *place;
-  bool failed; /* an error has been shown; guarded by the lock of stderr */
+  bool failed; /* an error has been shown; guarded by the lock of stderr, as is the list */
+  bool once, strict;
+  bool refused; /* a warning was an error */
+  char **warnings; /* that were shown, without their digits */
+  int count, capacity;
 } messages;
 
 void cli_set_quiet(bool quiet) {
   messages.quiet = quiet;
+}
+
+void cli_set_strict(bool strict) {
+  messages.strict = strict;
+}
+
+int cli_verdict(int code) {
+  return code == CLI_DONE && messages.refused ? CLI_FAILED : code;
+}
+
+void cli_warn_once(void) {
+  messages.once = true;
 }
 
 bool cli_quiet(void) {
@@ -57,12 +73,41 @@ void cli_messages_hold(bool hold) {
     funlockfile(stderr);
 }
 
+/* Whether a warning of these words has been shown. */
+static bool is_repeated(const char *text) {
+  char *words = cli_duplicate(text), *end = words;
+  for (const char *c = text; *c; c++)
+    if (!isdigit((unsigned char)*c))
+      *end++ = *c;
+  *end = '\0';
+  for (int i = 0; i < messages.count; i++) {
+    if (!strcmp(messages.warnings[i], words)) {
+      free(words);
+      return true;
+    }
+  }
+  messages.warnings = cli_grow(messages.warnings, messages.count, &messages.capacity, sizeof *messages.warnings);
+  messages.warnings[messages.count++] = words;
+  return false;
+}
+
+static void show_warning(const char *text) {
+  flockfile(stderr);
+  if (messages.strict) {
+    messages.refused = true;
+    show_error(messages.place, text);
+  } else if (!messages.quiet && !(messages.once && is_repeated(text))) {
+    show("warning", NULL, text);
+  }
+  funlockfile(stderr);
+}
+
 static void receive(void *user, TetcastSeverity severity, const char *text) {
   (void)user;
   if (severity == TETCAST_SEVERITY_ERROR)
     show_error(messages.place, text);
-  else if (severity == TETCAST_SEVERITY_WARNING && !messages.quiet)
-    show("warning", NULL, text);
+  else if (severity == TETCAST_SEVERITY_WARNING)
+    show_warning(text);
 }
 
 static char *print_list(const char *format, va_list list) {
@@ -92,13 +137,11 @@ void cli_error(const char *format, ...) {
 }
 
 void cli_warning(const char *format, ...) {
-  if (messages.quiet)
-    return;
   va_list list;
   va_start(list, format);
   char *text = print_list(format, list);
   va_end(list);
-  show("warning", NULL, text);
+  show_warning(text);
   free(text);
 }
 

@@ -72,7 +72,7 @@ static int measure(Converge *converge) {
   if (converge->lost > 0)
     cli_warning("%lld rays were lost on their way through the mesh: the report has faults there, please report this",
                 (long long)converge->lost);
-  return code;
+  return cli_verdict(code);
 }
 
 static int write_report(Converge *converge, Folder *folder) {
@@ -93,6 +93,8 @@ static int perform(Converge *converge, Folder *folder) {
     code = stage_read(&converge->stage, &converge->options);
     if (code == CLI_DONE)
       code = stage_prepare(&converge->stage, &converge->options);
+    if (code == CLI_DONE)
+      code = stage_shade(&converge->stage, &converge->options, converge->stage.info.field_range);
   }
   cli_interrupt_hold(true);
   if (code == CLI_DONE)
@@ -108,6 +110,7 @@ int tetcast_cli_converge(int argc, char **argv) {
   int code = render_options_parse(&converge.options, argc, argv);
   if (code < 0) {
     cli_set_quiet(converge.options.quiet);
+    cli_set_strict(converge.options.strict);
     converge.scene_studies = converge.options.input != NULL;
     converge.refine_study = converge.options.refine;
     code = perform(&converge, &folder);

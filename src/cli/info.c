@@ -24,6 +24,8 @@ static const char help_text[] =
     "      --time STEP          of a series this step, from 0, the default; -1 is the last; or t=TIME\n"
     "      --merge-tolerance D  points no further apart become one; default: only those of different pieces, if they\n"
     "                           coincide\n"
+    "      --cell-to-point      ranges of cell arrays are those of their averages at the points\n"
+    "      --strict             fails with the reader's first warning, or with what of the list is a defect\n"
     "      --subdivide N        cuts each edge of a curved cell into N; default: as its nodes lie\n"
     "      --formats            lists the formats that can be read\n"
     "  -h, --help               this text\n"
@@ -176,6 +178,37 @@ static void print_blocks(const Info *info) {
     printf("%-13s %s\n", i ? "" : "blocks", info->vtk->dataset_block(info->dataset, i));
 }
 
+/* What keeps a mesh or its values from being all that they should be, in one line. */
+static void report_defects(const Info *info) {
+  const TetcastMeshHealth *health = &info->health;
+  const bool mixed = health->inverted_cells > 0 && health->inverted_cells < info->tetrahedra - health->degenerate_cells;
+  int64_t nonfinite = 0;
+  for (int i = 0; i < info->array_count; i++) {
+    const InfoArray *array = &info->arrays[i];
+    if (array->reachable)
+      nonfinite += array->about.components == 1 ? array->component[0].nonfinite : array->magnitude.nonfinite;
+  }
+  const struct {
+    const char *name;
+    int64_t count;
+  } rows[] = {{"tetrahedra without volume", health->degenerate_cells},
+              {"tetrahedra inverted and others not", mixed ? health->inverted_cells : 0},
+              {"tetrahedra that another one equals", health->duplicate_cells},
+              {"faces of three tetrahedra or more", health->nonmanifold_faces},
+              {"values that are NaN or infinite", nonfinite}};
+  char *list = cli_duplicate("");
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    if (rows[i].count == 0)
+      continue;
+    char *longer = cli_print("%s%s%" PRId64 " %s", list, *list ? ", " : "", rows[i].count, rows[i].name);
+    free(list);
+    list = longer;
+  }
+  if (*list)
+    cli_warning("%s: %s", info->path, list);
+  free(list);
+}
+
 /* Counts of what is rare are shown only where there is some. */
 static void print_some(const char *name, int64_t count, const char *unit) {
   if (count > 0)
@@ -215,12 +248,14 @@ static void print_text(const Info *info) {
   print_some("merged", pieces.merged_points, "");
   print_some("of differing values", pieces.differing_points, "");
   print_some("of ghosts alone", pieces.ghost_points, "");
+  print_some("NaN or infinite", pieces.nonfinite_points, ", left out");
   printf("cells         %" PRId64 "\n", info->vtk->dataset_cell_count(info->dataset));
   const char *name;
   int64_t count;
   for (int i = 0; info->vtk->dataset_cell_type(info->dataset, i, &name, &count); i++)
     printf("  %-20s %" PRId64 "\n", name, count);
   print_some("ghost", pieces.ghost_cells, "");
+  print_some("NaN or infinite", pieces.nonfinite_cells, ", left out");
   printf("tetrahedra    %" PRId64 "\n", info->tetrahedra);
   const TetcastCutInfo cut = info->vtk->dataset_cut(info->dataset);
   print_cut(&cut);
@@ -244,8 +279,8 @@ static int print_formats(void) {
 typedef struct Request {
   const char *path, *block, *time;
   double merge_tolerance;
+  bool json, formats, strict, cell_to_point;
   int subdivide;
-  bool json, formats;
 } Request;
 
 static int parse(int argc, char **argv, Request *request) {
@@ -254,6 +289,8 @@ static int parse(int argc, char **argv, Request *request) {
                                         {"block", required_argument, NULL, 'b'},
                                         {"time", required_argument, NULL, 't'},
                                         {"merge-tolerance", required_argument, NULL, 'm'},
+                                        {"strict", no_argument, NULL, 'S'},
+                                        {"cell-to-point", no_argument, NULL, 'c'},
                                         {"subdivide", required_argument, NULL, 's'},
                                         {"help", no_argument, NULL, 'h'},
                                         {NULL, 0, NULL, 0}};
@@ -278,13 +315,19 @@ static int parse(int argc, char **argv, Request *request) {
     case 'f':
       request->formats = true;
       break;
+    case 'S':
+      request->strict = true;
+      break;
+    case 'c':
+      request->cell_to_point = true;
+      break;
     case 'b':
       if (!*optarg)
         return cli_usage_error("info", "--block: expected the name of a block");
       request->block = optarg;
       break;
     case 't':
-      if (!render_option_dataset(NULL, optarg, -1, &desc))
+      if (!strcmp(optarg, "all") || !render_option_dataset(NULL, optarg, -1, &desc))
         return cli_usage_error("info", "--time %s: expected a step, from 0 (or -1, the last, and back), or t=TIME", optarg);
       request->time = optarg;
       break;
@@ -317,12 +360,18 @@ int tetcast_cli_info(int argc, char **argv) {
   TetcastContext *context = cli_context_create(0);
   info.vtk = context ? cli_vtk() : NULL;
   code = CLI_FAILED;
+  cli_set_strict(request.strict);
   if (info.vtk) {
     info.desc = info.vtk->dataset_desc_default();
     render_option_dataset(request.block, request.time, request.merge_tolerance, &info.desc);
+    info.desc.cell_to_point = request.cell_to_point;
     info.desc.subdivision = request.subdivide;
     const TetcastStatus status = get_info(&info, context);
-    if (status == TETCAST_OK) {
+    if (status == TETCAST_OK && request.strict)
+      report_defects(&info);
+    if (cli_verdict(CLI_DONE) != CLI_DONE) {
+      code = CLI_FAILED;
+    } else if (status == TETCAST_OK) {
       (request.json ? info_print_json : print_text)(&info);
       code = cli_finish_output();
     } else {

@@ -6,12 +6,6 @@
 #include "info.h"
 #include "json.h"
 
-/* Names in data are whatever bytes a program wrote; what is not UTF-8 becomes null. */
-static json_t *text_or_null(const char *text) {
-  json_t *value = json_string(text);
-  return value ? value : json_null();
-}
-
 static json_t *range_object(const InfoRange *range) {
   const double ends[2] = {range->low, range->high};
   json_t *object = json_object();
@@ -22,7 +16,7 @@ static json_t *range_object(const InfoRange *range) {
 
 static json_t *array_object(const InfoArray *array) {
   json_t *object = json_object();
-  json_object_set_new(object, "name", text_or_null(array->about.name));
+  json_object_set_new(object, "name", cli_json_text(array->about.name));
   json_object_set_new(object, "association", json_string(array->about.association == TETCAST_CELL ? "cell" : "point"));
   json_object_set_new(object, "type", json_string(array->about.type));
   json_object_set_new(object, "components", json_integer(array->about.components));
@@ -63,6 +57,8 @@ static json_t *pieces_object(const TetcastDatasetPieces *pieces) {
   json_object_set_new(object, "ghost_points", json_integer(pieces->ghost_points));
   json_object_set_new(object, "merged_points", json_integer(pieces->merged_points));
   json_object_set_new(object, "differing_points", json_integer(pieces->differing_points));
+  json_object_set_new(object, "nonfinite_points", json_integer(pieces->nonfinite_points));
+  json_object_set_new(object, "nonfinite_cells", json_integer(pieces->nonfinite_cells));
   return object;
 }
 
@@ -74,7 +70,7 @@ static void set_steps_and_blocks(const Info *info, json_t *root) {
   json_object_set_new(root, "times", times);
   json_object_set_new(root, "step", json_integer(info->vtk->dataset_step(info->dataset)));
   for (int i = 0; info->vtk->dataset_block(info->dataset, i); i++)
-    json_array_append_new(blocks, text_or_null(info->vtk->dataset_block(info->dataset, i)));
+    json_array_append_new(blocks, cli_json_text(info->vtk->dataset_block(info->dataset, i)));
   json_object_set_new(root, "blocks", blocks);
   const TetcastDatasetPieces pieces = info->vtk->dataset_pieces(info->dataset);
   json_object_set_new(root, "pieces", pieces_object(&pieces));
@@ -98,7 +94,7 @@ static json_t *cut_object(const TetcastCutInfo *cut) {
 
 void info_print_json(const Info *info) {
   json_t *root = json_object();
-  json_object_set_new(root, "file", text_or_null(info->path));
+  json_object_set_new(root, "file", cli_json_text(info->path));
   set_steps_and_blocks(info, root);
   json_object_set_new(root, "points", json_integer(info->vtk->dataset_point_count(info->dataset)));
   json_object_set_new(root, "cells", json_integer(info->vtk->dataset_cell_count(info->dataset)));

@@ -52,6 +52,11 @@ int cli_json_numbers(const json_t *value, int most, double *values) {
   return count;
 }
 
+json_t *cli_json_text(const char *text) {
+  json_t *value = json_string(text);
+  return value ? value : json_null();
+}
+
 json_t *cli_json_array(const double *values, int count) {
   json_t *array = json_array();
   for (int i = 0; i < count; i++)
@@ -70,7 +75,7 @@ static void put(FILE *file, const json_t *value, int indent) {
       separator = ",";
     }
     fprintf(file, "\n%*s}", indent, "");
-  } else if (json_is_array(value) && json_is_array(json_array_get(value, 0))) {
+  } else if (json_is_array(value) && json_array_size(value) > 0 && !json_is_number(json_array_get(value, 0))) {
     for (size_t i = 0; i < json_array_size(value); i++) {
       fprintf(file, "%s\n%*s", i ? "," : "[", indent + 2, "");
       put(file, json_array_get(value, i), indent + 2);

@@ -39,6 +39,7 @@ static const char help_text[] =
 
 static const char more_help_text[] =
   "      --single          coordinates and scalar in single precision\n"
+  "      --strict          a warning is an error: nothing is written\n"
   "      --quiet           no summary, no warnings\n"
   "  -h, --help            this text\n"
   "\n"
@@ -211,14 +212,14 @@ static int work(const Job *job, const sigset_t *interruptions, volatile int *pha
     status = make_single(context, &mesh);
   if (status == TETCAST_OK && job->with_field)
     status = make_field(job, context, mesh, &field);
-  if (status == TETCAST_OK) {
+  if (status == TETCAST_OK && cli_verdict(CLI_DONE) == CLI_DONE) {
     *phase = PHASE_WRITE;
     sigprocmask(SIG_BLOCK, interruptions, NULL); /* or a temporary file would be left */
     const char *const names[] = {job->field.name};
     const TetcastField *const fields[] = {field};
     status = vtk->dataset_write(context, job->output, mesh, job->with_field ? 1 : 0, names, fields);
   }
-  int code = status == TETCAST_OK ? CLI_DONE : cli_failed(status);
+  int code = status == TETCAST_OK ? cli_verdict(CLI_DONE) : cli_failed(status);
   if (code == CLI_DONE && !cli_quiet()) {
     print_summary(job, mesh);
     code = cli_finish_output();
@@ -330,6 +331,9 @@ static int parse_option(Job *job, int code) {
   case 's':
     job->single = true;
     return -1;
+  case 'S':
+    cli_set_strict(true);
+    return -1;
   default:
     cli_set_quiet(true);
     return -1;
@@ -341,7 +345,8 @@ static int parse(int argc, char **argv, Job *job) {
     {"output", required_argument, NULL, 'o'},     {"quality", required_argument, NULL, 'q'},
     {"max-volume", required_argument, NULL, 'v'}, {"field", required_argument, NULL, 'f'},
     {"single", no_argument, NULL, 's'},           {"quiet", no_argument, NULL, 'Q'},
-    {"help", no_argument, NULL, 'h'},             {NULL, 0, NULL, 0}};
+    {"help", no_argument, NULL, 'h'},             {"strict", no_argument, NULL, 'S'},
+    {NULL, 0, NULL, 0}};
   optind = 0;
   int code;
   while ((code = getopt_long(argc, argv, ":ho:", words, NULL)) != -1) {

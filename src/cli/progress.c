@@ -11,13 +11,21 @@
 
 static atomic_int held, caught;
 
+static struct {
+  const char *label;
+  double started, drawn;
+  double begin, end; /* of the part, while `whole` */
+  bool visible, whole;
+} bar = {.end = 1};
+
 /* Once: a signal may come to one thread while another ends the process. */
 static void end(int signal_number) {
   static atomic_flag ending = ATOMIC_FLAG_INIT;
   if (atomic_flag_test_and_set(&ending))
     return;
-  static const char text[] = "tetcast: error: interrupted\n";
-  const ssize_t ignored = write(STDERR_FILENO, text, sizeof text - 1);
+  static const char text[] = "\r\033[Ktetcast: error: interrupted\n";
+  const size_t skip = bar.visible ? 0 : 4; /* a bar is removed */
+  const ssize_t ignored = write(STDERR_FILENO, text + skip, sizeof text - 1 - skip);
   (void)ignored;
   _exit(128 + signal_number);
 }
@@ -57,14 +65,9 @@ int cli_interrupted(void) {
 
 enum { BAR_WIDTH = 40 };
 
-static struct {
-  const char *label;
-  double started, drawn;
-  bool visible;
-} bar;
-
 bool cli_progress_show(double fraction) {
   const double now = cli_seconds();
+  fraction = bar.begin + (bar.end - bar.begin) * fraction;
   if (bar.label && now - bar.started > 1 && now - bar.drawn > 0.1) {
     char cells[BAR_WIDTH + 1];
     const int filled = (int)(BAR_WIDTH * (fraction > 1 ? 1 : fraction < 0 ? 0 : fraction));
@@ -83,11 +86,24 @@ static bool advance(void *user, double fraction) {
   return cli_progress_show(fraction);
 }
 
-TetcastProgress cli_progress(const char *label) {
+static void begin_bar(const char *label) {
   bar.label = !cli_quiet() && isatty(STDERR_FILENO) ? label : NULL;
   bar.started = cli_seconds();
   bar.drawn = 0;
+}
+
+TetcastProgress cli_progress(const char *label) {
+  if (!bar.whole)
+    begin_bar(label);
   return (TetcastProgress){.function = advance, .user = NULL};
+}
+
+void cli_progress_part(const char *label, double begin, double end) {
+  if (label && bar.label != label)
+    begin_bar(label);
+  bar.whole = label != NULL;
+  bar.begin = label ? begin : 0;
+  bar.end = label ? end : 1;
 }
 
 void cli_progress_clear(void) {

@@ -8,27 +8,12 @@
 
 #include <tetcast/tetcast.h>
 
-#include "adapter.h"
 #include "cli.h"
 #include "file.h"
 #include "progress.h"
-#include "render_options.h"
+#include "render.h"
 #include "scene_file.h"
-#include "stage.h"
-#include "stats.h"
-
-/* A run of the command; each step returns an exit code. */
-typedef struct Run {
-  RenderOptions options;
-  const CliImage *image;
-  TetcastImageDesc image_desc;
-  pthread_t image_thread;
-  sem_t image_begun;
-  bool image_pending; /* image_thread still has to be waited for */
-  Stage stage;
-  TetcastFrame *frame;
-  RunStats stats;
-} Run;
+#include "series.h"
 
 /* The name of the input with .png, in the current folder. */
 static char *default_output(const char *input) {
@@ -48,9 +33,11 @@ static int check(Run *run) {
   if ((options->stats && !cli_file_check(options->stats)) ||
       (options->save_scene && !cli_file_check(options->save_scene)))
     return CLI_FAILED;
+  if (render_options_given(options, OPTION_EMISSION) && !render_options_given(options, OPTION_BACKGROUND))
+    options->background[0] = options->background[1] = options->background[2] = 0; /* what shines is seen against the dark */
   if (options->source >> OPTION_BACKGROUND & 1 && render_options_floating(options)) /* on the command line, that is */
     cli_warning("--background has no effect: floating-point pixels hold the picture without background");
-  return CLI_DONE;
+  return cli_verdict(CLI_DONE);
 }
 
 /* Whether the picture can be written where and as it is to be. */
@@ -61,6 +48,7 @@ static int check_image(Run *run) {
   run->image_desc = run->image->image_desc_default();
   run->image_desc.pixel_type = (TetcastPixelType)run->options.pixel_type;
   memcpy(run->image_desc.background, run->options.background, sizeof run->options.background);
+  run->image_desc.channels_only = render_options_given(&run->options, OPTION_GROUPS) && run->options.groups;
   cli_interrupt_hold(true); /* the check puts a file in a folder for a moment */
   const TetcastStatus status = run->image->image_check(run->stage.context, run->options.output, &run->image_desc);
   cli_interrupt_hold(false);
@@ -88,7 +76,7 @@ static void *check_image_aside(void *argument) {
   return NULL;
 }
 
-static void await_image(Run *run) {
+void render_await_image(Run *run) {
   if (run->image_pending)
     pthread_join(run->image_thread, NULL);
   run->image_pending = false;
@@ -99,7 +87,7 @@ static Run *running;
 
 static void before_fork(void) {
   if (running)
-    await_image(running);
+    render_await_image(running);
 }
 
 /* Loading the image library takes about as long as reading a large mesh, and both are work for one processor: they are
@@ -128,26 +116,30 @@ static int load(Run *run) {
   if (code == CLI_DONE)
     code = stage_prepare(&run->stage, &run->options);
   stage_drop_dataset(&run->stage);
+  if (code == CLI_DONE)
+    code = stage_shade(&run->stage, &run->options, run->stage.info.field_range);
   return code;
 }
 
-static int create_frame(Run *run) {
+int render_create_frame(Run *run) {
   const RenderOptions *options = &run->options;
   TetcastFrameDesc desc = tetcast_frame_desc_default();
   desc.width = (int64_t)options->size[0];
   desc.height = (int64_t)options->size[1];
   desc.type = options->pixel_type == TETCAST_PIXEL_DOUBLE ? TETCAST_TYPE_FLOAT64 : TETCAST_TYPE_FLOAT32;
-  if (options->channels)
-    desc.channels = render_option_channels(options->channels);
+  desc.channels = render_options_channels(options);
+  if (tetcast_scene_groups(run->stage.scene) > 0)
+    desc.groups = tetcast_scene_groups(run->stage.scene);
   const TetcastStatus status = tetcast_frame_create(run->stage.context, &desc, &run->frame);
   return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }
 
-static int render(Run *run) {
+int render_frame(Run *run) {
   RunStats *stats = &run->stats;
   stats->threads = tetcast_context_threads(run->stage.context);
   stats->repeats = (int)run->options.repeat;
-  stats->render_seconds = cli_allocate(sizeof(double) * (size_t)stats->repeats);
+  if (!stats->render_seconds)
+    stats->render_seconds = cli_allocate(sizeof(double) * (size_t)stats->repeats);
   TetcastRenderDesc desc = tetcast_render_desc_default();
   desc.samples = (int)run->options.samples;
   desc.isa = (TetcastIsa)run->options.isa;
@@ -168,27 +160,47 @@ static int render(Run *run) {
     cli_warning(
         "%lld of %lld rays were lost on their way through the mesh: the picture has faults there, please report this",
         (long long)stats->render.lost, (long long)stats->render.rays);
-  return CLI_DONE;
+  return cli_verdict(CLI_DONE);
+}
+
+/* Radiance has no scale of its own: what an integer pixel makes of it may be all white or all black. */
+static void check_brightness(const Run *run) {
+  if (!render_options_given(&run->options, OPTION_EMISSION) || render_options_floating(&run->options))
+    return;
+  const float *pixels = tetcast_frame_pixels(run->frame);
+  const int64_t count = tetcast_frame_width(run->frame) * tetcast_frame_height(run->frame);
+  float brightest = 0;
+  for (int64_t i = 0; i < 4 * count; i++)
+    if (i % 4 < 3 && pixels[i] > brightest)
+      brightest = pixels[i];
+  if (brightest > 1)
+    cli_warning("radiance up to %g: above 1 all is white in integer pixels; .exr and .tif hold it as it is", (double)brightest);
+  else if (brightest > 0 && brightest < 1.0f / 255)
+    cli_warning("radiance up to %g: below 1/255 all is black in integer pixels; .exr and .tif hold it as it is", (double)brightest);
+}
+
+int render_write_image(Run *run, const char *path) {
+  const Stage *stage = &run->stage;
+  check_brightness(run);
+  render_await_image(run);
+  const double start = cli_seconds();
+  const TetcastStatus status = run->image->image_write(stage->context, path, run->frame, &run->image_desc);
+  run->stats.write_seconds = cli_seconds() - start;
+  run->stats.read_seconds = stage->read_seconds;
+  run->stats.prepare_seconds = stage->prepare_seconds;
+  run->stats.volume = stage->info;
+  return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }
 
 static int write_files(Run *run) {
   const RenderOptions *options = &run->options;
-  await_image(run);
-  const double start = cli_seconds();
-  const TetcastStatus status =
-      run->image->image_write(run->stage.context, options->output, run->frame, &run->image_desc);
-  run->stats.write_seconds = cli_seconds() - start;
-  if (status != TETCAST_OK)
-    return cli_failed(status);
   const Stage *stage = &run->stage;
+  const int code = render_write_image(run, options->output);
+  if (code != CLI_DONE)
+    return code;
   if (options->save_scene && !scene_file_write(options, stage->array, &stage->camera, stage->transfer_function))
     return CLI_FAILED;
-  run->stats.read_seconds = stage->read_seconds;
-  run->stats.prepare_seconds = stage->prepare_seconds;
-  run->stats.volume = stage->info;
-  if (options->stats && !stats_write(options->stats, &run->stats))
-    return CLI_FAILED;
-  return CLI_DONE;
+  return !options->stats || cli_json_write(options->stats, stats_object(&run->stats)) ? CLI_DONE : CLI_FAILED;
 }
 
 static int perform(Run *run) {
@@ -197,12 +209,14 @@ static int perform(Run *run) {
   cli_interrupt_hold(false);
   if (code == CLI_DONE)
     code = begin_image(run);
+  if (code == CLI_DONE && series_wanted(&run->options))
+    return series_perform(run);
   if (code == CLI_DONE)
     code = load(run);
   if (code == CLI_DONE)
-    code = create_frame(run);
+    code = render_create_frame(run);
   if (code == CLI_DONE)
-    code = render(run);
+    code = render_frame(run);
   if (code == CLI_DONE)
     code = write_files(run);
   return code;
@@ -213,9 +227,10 @@ int tetcast_cli_render(int argc, char **argv) {
   int code = render_options_parse(&run.options, argc, argv);
   if (code < 0) {
     cli_set_quiet(run.options.quiet);
+    cli_set_strict(run.options.strict);
     code = perform(&run);
   }
-  await_image(&run);
+  render_await_image(&run);
   running = NULL;
   tetcast_frame_destroy(&run.frame);
   stage_release(&run.stage);

@@ -22,6 +22,10 @@ typedef enum OptionKind { KIND_TEXT, KIND_PATH, KIND_NUMBERS, KIND_INTEGERS, KIN
 #define BIT(id)    (UINT64_C(1) << (id))
 #define AT(member) offsetof(RenderOptions, member)
 
+/* A picture is made by a transfer function or from coefficients. */
+#define DIRECT   (BIT(OPTION_EXTINCTION) | BIT(OPTION_EMISSION) | BIT(OPTION_GROUPS))
+#define TRANSFER (BIT(OPTION_ARRAY) | BIT(OPTION_TRANSFER) | BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | BIT(OPTION_OPACITY_MODEL))
+
 /* Order of the library's enumerations. */
 static const char *const opacity_models[] = {"unit-distance", "vtk-unstructured", "ospray", NULL};
 static const char *const isas[] = {"auto", "scalar", "baseline", "avx2", "avx512", NULL};
@@ -41,20 +45,27 @@ static const struct {
 } table[OPTION_COUNT] = {
     [OPTION_INPUT] = {"input", KIND_PATH, AT(input), .form = "expected a path"},
     [OPTION_OUTPUT] = {"output", KIND_PATH, AT(output), .form = "expected a path"},
-    [OPTION_ARRAY] = {"array", KIND_TEXT, AT(array), .form = "expected NAME, NAME:component or NAME:mag"},
+    [OPTION_ARRAY] = {"array", KIND_TEXT, AT(array), .excludes = DIRECT, .form = "expected NAME, NAME:component or NAME:mag"},
     [OPTION_BLOCK] = {"block", KIND_TEXT, AT(block), .form = "expected the name of a block"},
-    [OPTION_TIME] = {"time", KIND_TEXT, AT(time), .form = "expected a step, from 0 (or -1, the last, and back), or t=TIME"},
+    [OPTION_TIME] = {"time", KIND_TEXT, AT(time), .form = "expected a step, from 0 (or -1, the last, and back), t=TIME, or all"},
     [OPTION_MERGE_TOLERANCE] = {"merge-tolerance", KIND_NUMBERS, AT(merge_tolerance), 1, 1, 0, DBL_MAX,
                                 .form = "expected a distance, 0 or above"},
+    [OPTION_CELL_TO_POINT] = {"cell-to-point", KIND_FLAG, AT(cell_to_point), .form = "expected true or false"},
     [OPTION_SUBDIVIDE] = {"subdivide", KIND_INTEGERS, AT(subdivide), 1, 1, 0, TETCAST_MAX_SUBDIVISION,
                           .form = "expected a whole number from 1 to 16, or 0: as the nodes lie"},
-    [OPTION_TRANSFER] = {"transfer", KIND_PATH, AT(transfer), .excludes = BIT(OPTION_PRESET) | BIT(OPTION_RANGE),
+    [OPTION_TRANSFER] = {"transfer", KIND_PATH, AT(transfer), .excludes = BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | DIRECT,
                          .form = "expected a transfer function or the path of one"},
-    [OPTION_PRESET] = {"preset", KIND_TEXT, AT(preset), .excludes = BIT(OPTION_TRANSFER), .form = "expected a name"},
-    [OPTION_RANGE] = {"range", KIND_NUMBERS, AT(range), 2, 2, -DBL_MAX, DBL_MAX, .excludes = BIT(OPTION_TRANSFER),
-                      .form = "expected two numbers, LO not above HI"},
-    [OPTION_OPACITY_MODEL] = {"opacity-model", KIND_CHOICE, AT(opacity_model), .names = opacity_models,
+    [OPTION_PRESET] = {"preset", KIND_TEXT, AT(preset), .excludes = BIT(OPTION_TRANSFER) | DIRECT, .form = "expected a name"},
+    [OPTION_RANGE] = {"range", KIND_NUMBERS, AT(range), 2, 2, -DBL_MAX, DBL_MAX, .excludes = BIT(OPTION_TRANSFER) | DIRECT,
+                      .form = "expected two numbers, LO not above HI, or step, or series"},
+    [OPTION_OPACITY_MODEL] = {"opacity-model", KIND_CHOICE, AT(opacity_model), .names = opacity_models, .excludes = DIRECT,
                               .form = "expected unit-distance, vtk-unstructured or ospray"},
+    [OPTION_EXTINCTION] = {"extinction", KIND_TEXT, AT(extinction), .excludes = TRANSFER, .only = COMMAND_RENDER,
+                           .form = "expected NAME, NAME:component or NAME:mag"},
+    [OPTION_EMISSION] = {"emission", KIND_TEXT, AT(emission), .excludes = TRANSFER, .only = COMMAND_RENDER,
+                         .form = "expected NAME, NAME:component or NAME:mag"},
+    [OPTION_GROUPS] = {"groups", KIND_FLAG, AT(groups), .excludes = TRANSFER, .only = COMMAND_RENDER,
+                       .form = "expected true or false"},
     [OPTION_EYE] = {"eye", KIND_NUMBERS, AT(eye), 3, 3, -DBL_MAX, DBL_MAX, .form = "expected three numbers x,y,z"},
     [OPTION_TARGET] = {"target", KIND_NUMBERS, AT(target), 3, 3, -DBL_MAX, DBL_MAX,
                        .form = "expected three numbers x,y,z"},
@@ -74,7 +85,8 @@ static const struct {
                            .only = COMMAND_RENDER, .form = "expected exact, midpoint:N, trapezoid:N, gauss:N (N to 16) or table:N (N from 2 to 4096)"},
     [OPTION_TOLERANCE] = {"tolerance", KIND_NUMBERS, AT(tolerance), 1, 1, 0, DBL_MAX, .only = COMMAND_RENDER,
                           .form = "expected a number, 0 or above"},
-    [OPTION_CHANNELS] = {"channels", KIND_TEXT, AT(channels), .only = COMMAND_RENDER, .form = "expected error"},
+    [OPTION_CHANNELS] = {"channels", KIND_TEXT, AT(channels), .only = COMMAND_RENDER,
+                         .form = "expected error, or of radiance, optical_depth, transmittance and path_length some"},
     [OPTION_TRAVERSAL] = {"traversal", KIND_CHOICE, AT(traversal), .names = traversals,
                           .form = "expected shell or faces"},
     [OPTION_ISA] = {"isa", KIND_CHOICE, AT(isa), .names = isas,
@@ -88,6 +100,8 @@ static const struct {
     [OPTION_STATS] = {"stats", KIND_PATH, AT(stats), .only = COMMAND_RENDER, .form = "expected a path"},
     [OPTION_SCENE] = {"scene", KIND_PATH, AT(scene), .form = "expected a path"},
     [OPTION_SAVE_SCENE] = {"save-scene", KIND_PATH, AT(save_scene), .only = COMMAND_RENDER, .form = "expected a path"},
+    [OPTION_RESUME] = {"resume", KIND_FLAG, AT(resume), .only = COMMAND_RENDER, .form = "expected true or false"},
+    [OPTION_STRICT] = {"strict", KIND_FLAG, AT(strict), .form = "expected true or false"},
     [OPTION_QUIET] = {"quiet", KIND_FLAG, AT(quiet), .form = "expected true or false"},
     [OPTION_REFINE] = {"refine", KIND_FLAG, AT(refine), .only = COMMAND_CONVERGE},
     [OPTION_NO_PLOTS] = {"no-plots", KIND_FLAG, AT(no_plots), .only = COMMAND_CONVERGE},
@@ -134,6 +148,10 @@ OptionId render_option_find(const char *key) {
 
 bool render_option_is_path(OptionId id) {
   return table[id].kind == KIND_PATH;
+}
+
+bool render_option_is_flag(OptionId id) {
+  return table[id].kind == KIND_FLAG;
 }
 
 const char *render_option_choice(OptionId id, int value) {
@@ -184,7 +202,7 @@ bool render_option_dataset(const char *block, const char *time, double merge_tol
   desc->block = block;
   desc->merge_tolerance = merge_tolerance;
   double number = 0;
-  if (!time)
+  if (!time || !strcmp(time, "all"))
     return true;
   if (!strncmp(time, "t=", 2))
     return cli_parse_number(time + 2, &desc->time);
@@ -194,17 +212,46 @@ bool render_option_dataset(const char *block, const char *time, double merge_tol
   return true;
 }
 
+static const struct {
+  const char *name;
+  uint32_t bit;
+} channel_names[] = {{"error", TETCAST_CHANNEL_ERROR},
+                     {"radiance", TETCAST_CHANNEL_RADIANCE},
+                     {"optical_depth", TETCAST_CHANNEL_OPTICAL_DEPTH},
+                     {"transmittance", TETCAST_CHANNEL_TRANSMITTANCE},
+                     {"path_length", TETCAST_CHANNEL_PATH_LENGTH}};
+
+static uint32_t channel_bit(const char *name, size_t length) {
+  for (size_t i = 0; i < sizeof channel_names / sizeof *channel_names; i++)
+    if (strlen(channel_names[i].name) == length && !strncmp(channel_names[i].name, name, length))
+      return channel_names[i].bit;
+  return 0;
+}
+
 uint32_t render_option_channels(const char *text) {
   uint32_t channels = 0;
   for (;;) {
     const size_t length = strcspn(text, ",");
-    if (length != strlen("error") || strncmp(text, "error", length) || channels & TETCAST_CHANNEL_ERROR)
+    const uint32_t bit = channel_bit(text, length);
+    if (!bit || channels & bit)
       return 0;
-    channels |= TETCAST_CHANNEL_ERROR;
+    channels |= bit;
     if (!text[length])
       return channels;
     text += length + 1;
   }
+}
+
+static bool groups_given(const RenderOptions *options) {
+  return render_options_given(options, OPTION_GROUPS) && options->groups;
+}
+
+uint32_t render_options_channels(const RenderOptions *options) {
+  if (options->channels)
+    return render_option_channels(options->channels);
+  if (!groups_given(options))
+    return 0;
+  return render_options_given(options, OPTION_EMISSION) ? TETCAST_CHANNEL_RADIANCE : TETCAST_CHANNEL_TRANSMITTANCE;
 }
 
 static bool has_extension(const char *path, const char *extension) {
@@ -223,9 +270,30 @@ bool render_options_floating(const RenderOptions *options) {
          (has_extension(options->output, ".exr") || is_tiff(options->output) || has_extension(options->output, ".hdr"));
 }
 
+/* What of coefficients and what of a transfer function doesn't go together. NULL: nothing. */
+static const char *find_mixture(const RenderOptions *options) {
+  const uint32_t channels = render_options_channels(options);
+  if (!render_options_direct(options)) {
+    if (groups_given(options))
+      return "--groups: needs --extinction or --emission";
+    return channels & ~(uint32_t)TETCAST_CHANNEL_ERROR ? "--channels: only error is possible without --extinction or --emission" : NULL;
+  }
+  if (options->integrator && strcmp(options->integrator, "exact"))
+    return "--integrator: with --extinction or --emission there is only exact";
+  if (channels & TETCAST_CHANNEL_ERROR)
+    return "--channels error: not possible with --extinction or --emission";
+  if (channels & TETCAST_CHANNEL_RADIANCE && !render_options_given(options, OPTION_EMISSION))
+    return "--channels radiance: needs --emission";
+  if (channels & (TETCAST_CHANNEL_OPTICAL_DEPTH | TETCAST_CHANNEL_TRANSMITTANCE) && !render_options_given(options, OPTION_EXTINCTION))
+    return "--channels optical_depth, transmittance: need --extinction";
+  return NULL;
+}
+
 /* What is wrong with options that are in order one by one (for free()), NULL: nothing. */
 static char *find_fault(const RenderOptions *options) {
   const char *view = view_fault(options);
+  if (!view)
+    view = find_mixture(options);
   if (view)
     return cli_duplicate(view);
   TetcastIntegrator integrator = TETCAST_INTEGRATOR_EXACT;
@@ -235,15 +303,16 @@ static char *find_fault(const RenderOptions *options) {
   if (integrator != TETCAST_INTEGRATOR_EXACT && (options->tolerance > 0 || options->channels))
     return cli_print("%s: only the exact integrator knows its error, not %s",
                      options->channels ? "--channels error" : "--tolerance", options->integrator);
-  if (!options->channels)
+  if (!render_options_channels(options))
     return NULL;
-  const char *output = options->output ? options->output : ".png";
+  const char *output = options->output ? options->output : ".png", *asked = options->channels ? "--channels " : "--groups";
+  const char *list = options->channels ? options->channels : "";
   if (!has_extension(output, ".exr") && !is_tiff(output))
-    return cli_print("--channels %s: only .exr and .tif hold more channels than colour and alpha, not %s", options->channels,
+    return cli_print("%s%s: only .exr and .tif hold more channels than colour and alpha, not %s", asked, list,
                      options->output ? output : "the default, a .png");
   return render_options_floating(options)
            ? NULL
-           : cli_print("--channels %s: needs floating-point pixels, not %s", options->channels,
+           : cli_print("%s%s: needs floating-point pixels, not %s", asked, list,
                        render_option_choice(OPTION_PIXEL_TYPE, options->pixel_type));
 }
 
@@ -274,8 +343,18 @@ static const char *set_choice(OptionId id, void *at, const OptionValue *value) {
   return table[id].form;
 }
 
+static const char *set_range(RenderOptions *options, const OptionValue *value) {
+  const bool step = value->text && !strcmp(value->text, "step"), series = value->text && !strcmp(value->text, "series");
+  const char *reason = step || series ? NULL : set_numbers(OPTION_RANGE, options->range, value);
+  if (!reason)
+    options->range_kind = step ? RANGE_STEP : series ? RANGE_SERIES : RANGE_FIXED;
+  return reason;
+}
+
 const char *render_options_set(RenderOptions *options, OptionId id, const OptionValue *value) {
   void *at = (char *)options + table[id].at;
+  if (id == OPTION_RANGE)
+    return set_range(options, value);
   switch (table[id].kind) {
   case KIND_NUMBERS:
   case KIND_INTEGERS:
@@ -314,7 +393,8 @@ static int set_from_text(RenderOptions *options, OptionId id, const char *text) 
   OptionValue value = {.text = text};
   if (table[id].kind == KIND_NUMBERS || table[id].kind == KIND_INTEGERS) {
     value.count = cli_parse_numbers(text, id == OPTION_SIZE ? 'x' : ',', table[id].most, value.numbers);
-    value.text = NULL;
+    if (value.count > 0 || id != OPTION_RANGE) /* which may be a word */
+      value.text = NULL;
   } else if (table[id].kind == KIND_FLAG) {
     value.count = 1;
     value.numbers[0] = 1;
@@ -394,11 +474,15 @@ static void take_scene(RenderOptions *options) {
 static int check_use(const RenderOptions *options) {
   if (options->command == COMMAND_CONVERGE && !options->output)
     return cli_usage_error("converge", "no folder for the report given: -o REPORTDIR");
+  if (options->command == COMMAND_CONVERGE && options->time && !strcmp(options->time, "all"))
+    return cli_usage_error("converge", "--time all: expected a single step");
+  if (options->command == COMMAND_CONVERGE && render_options_range(options) == RANGE_SERIES)
+    return cli_usage_error("converge", "--range series: expected two numbers, LO not above HI, or step");
   if (options->input)
     return -1;
   if (!options->refine)
     return cli_usage_error(command_name(options), "no input given");
-  const uint64_t used = BIT(OPTION_OUTPUT) | BIT(OPTION_THREADS) | BIT(OPTION_QUIET) | BIT(OPTION_REFINE) |
+  const uint64_t used = BIT(OPTION_OUTPUT) | BIT(OPTION_THREADS) | BIT(OPTION_QUIET) | BIT(OPTION_STRICT) | BIT(OPTION_REFINE) |
                         BIT(OPTION_NO_PLOTS);
   for (int id = 0; id < OPTION_COUNT; id++)
     if (options->given & ~used & BIT(id))
@@ -412,6 +496,10 @@ int render_options_parse(RenderOptions *options, int argc, char **argv) {
     options->source = 0;
     if (!scene_file_read(options))
       return CLI_FAILED;
+    if (options->command == COMMAND_CONVERGE && render_options_direct(options)) {
+      cli_error("%s: a scene of extinction or emission arrays is always exact: there is nothing to compare", options->scene);
+      return CLI_FAILED;
+    }
     take_scene(options);
   }
   options->source = 0;

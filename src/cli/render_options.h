@@ -19,11 +19,15 @@ typedef enum OptionId {
   OPTION_BLOCK,
   OPTION_TIME,
   OPTION_MERGE_TOLERANCE,
+  OPTION_CELL_TO_POINT,
   OPTION_SUBDIVIDE,
   OPTION_TRANSFER,
   OPTION_PRESET,
   OPTION_RANGE,
   OPTION_OPACITY_MODEL,
+  OPTION_EXTINCTION,
+  OPTION_EMISSION,
+  OPTION_GROUPS,
   OPTION_EYE,
   OPTION_TARGET,
   OPTION_UP,
@@ -43,6 +47,8 @@ typedef enum OptionId {
   OPTION_STATS,
   OPTION_SCENE,
   OPTION_SAVE_SCENE,
+  OPTION_RESUME,
+  OPTION_STRICT,
   OPTION_QUIET,
   OPTION_REFINE,
   OPTION_NO_PLOTS,
@@ -51,16 +57,20 @@ typedef enum OptionId {
 
 typedef enum RenderCommand { COMMAND_RENDER = 1, COMMAND_CONVERGE = 2 } RenderCommand;
 
+/* What --range says. */
+typedef enum RangeKind { RANGE_DEFAULT, RANGE_FIXED, RANGE_STEP, RANGE_SERIES } RangeKind;
+
 typedef struct RenderOptions {
   RenderCommand command;
   /* NULL unless given */
-  char *input, *output, *array, *block, *time, *transfer, *preset, *integrator, *channels, *stats, *scene, *save_scene;
+  char *input, *output, *array, *block, *time, *transfer, *preset, *extinction, *emission, *integrator, *channels, *stats, *scene, *save_scene;
   json_t *transfer_object; /* of a scene file; instead of transfer */
   double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], tolerance, threads, repeat;
   double merge_tolerance; /* negative unless given */
+  RangeKind range_kind;   /* RANGE_FIXED: options->range */
   double subdivide;
   int opacity_model, traversal, isa, pixel_type; /* values of the library's enumerations */
-  int quiet, refine, no_plots;
+  int cell_to_point, quiet, strict, resume, refine, no_plots, groups;
   uint64_t given;  /* bit 1 << OptionId: has a value from command line or scene file */
   uint64_t source; /* the same for the source being read alone */
 } RenderOptions;
@@ -82,6 +92,7 @@ static inline bool render_options_given(const RenderOptions *options, OptionId i
 /* The option of a scene file's key, e.g. "pixel_type" or "pixel-type"; OPTION_COUNT: none. */
 OptionId render_option_find(const char *key);
 bool render_option_is_path(OptionId id);
+bool render_option_is_flag(OptionId id);
 
 /* The name of a choice's value. */
 const char *render_option_choice(OptionId id, int value);
@@ -90,11 +101,29 @@ const char *render_option_choice(OptionId id, int value);
 bool render_option_integrator(const char *text, TetcastIntegrator *integrator, int *n);
 
 /* What --block, --time and --merge-tolerance say (NULL, NULL, negative: nothing). False: the time is neither a step, e.g. "3", nor a
- * time, e.g. "t=0.5". */
+ * time, e.g. "t=0.5", nor "all", which leaves the first step. */
 bool render_option_dataset(const char *block, const char *time, double merge_tolerance, TetcastDatasetDesc *desc);
+
+/* What --range says; RANGE_DEFAULT where it is not given, or given up for a transfer function. */
+static inline RangeKind render_options_range(const RenderOptions *options) {
+  return render_options_given(options, OPTION_RANGE) ? options->range_kind : RANGE_DEFAULT;
+}
+
+/* The colour map where no transfer function is given. */
+static inline const char *render_options_preset(const RenderOptions *options) {
+  return render_options_given(options, OPTION_PRESET) ? options->preset : "viridis";
+}
+
+/* Whether extinction or emission come from arrays of their own. */
+static inline bool render_options_direct(const RenderOptions *options) {
+  return render_options_given(options, OPTION_EXTINCTION) || render_options_given(options, OPTION_EMISSION);
+}
 
 /* The TetcastChannel bits of a list as --channels has it, 0: there is something else in it. */
 uint32_t render_option_channels(const char *text);
+
+/* Those of the frame; --groups alone means the radiance, or the transmittance when nothing is emitted. */
+uint32_t render_options_channels(const RenderOptions *options);
 
 /* Whether the pixels of options->output will be floating-point, which hold no background. */
 bool render_options_floating(const RenderOptions *options);

@@ -15,7 +15,7 @@ static bool set_value(RenderOptions *options, OptionId id, const char *key, cons
     char *folder = cli_path_folder(options->scene);
     value.text = path = cli_path_join(folder, value.text);
     free(folder);
-  } else if (json_is_boolean(json) && id == OPTION_QUIET) {
+  } else if (json_is_boolean(json) && render_option_is_flag(id)) {
     value.count = 1;
     value.numbers[0] = json_is_true(json);
   } else if (!value.text) {
@@ -23,7 +23,7 @@ static bool set_value(RenderOptions *options, OptionId id, const char *key, cons
   }
 
   const char *reason = NULL;
-  if (id == OPTION_QUIET && !json_is_boolean(json)) {
+  if (render_option_is_flag(id) && !json_is_boolean(json)) {
     reason = "expected true or false";
   } else if (id == OPTION_TRANSFER && json_is_object(json)) {
     json_decref(options->transfer_object);
@@ -128,13 +128,20 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
   /* Names come from the file system and the data, and JSON takes UTF-8 only. */
   int failed = json_object_set_new(scene, "input", json_string(input));
   failed |= json_object_set_new(scene, "output", json_string(cli_path_name(options->output)));
-  failed |= json_object_set_new(scene, "array", json_string(array));
+  if (render_options_given(options, OPTION_EXTINCTION))
+    failed |= json_object_set_new(scene, "extinction", json_string(options->extinction));
+  if (render_options_given(options, OPTION_EMISSION))
+    failed |= json_object_set_new(scene, "emission", json_string(options->emission));
+  if (array)
+    failed |= json_object_set_new(scene, "array", json_string(array));
   if (options->block)
     failed |= json_object_set_new(scene, "block", json_string(options->block));
-  if (options->time)
+  if (options->time) /* "t=0.5", "all" */
     json_object_set_new(scene, "time", json_string(options->time));
   if (options->merge_tolerance >= 0)
     json_object_set_new(scene, "merge_tolerance", json_real(options->merge_tolerance));
+  if (options->cell_to_point)
+    json_object_set_new(scene, "cell_to_point", json_true());
   if (options->subdivide > 0)
     json_object_set_new(scene, "subdivide", json_integer((json_int_t)options->subdivide));
   free(input);
@@ -143,7 +150,14 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
     json_decref(scene);
     return false;
   }
-  json_object_set_new(scene, "transfer", transfer_object(transfer_function));
+  if (transfer_function) {
+    json_object_set_new(scene, "transfer", transfer_object(transfer_function));
+  } else if (!render_options_direct(options)) {
+    json_object_set_new(scene, "preset", json_string(render_options_preset(options)));
+    json_object_set_new(scene, "range", json_string("step"));
+  }
+  if (render_options_given(options, OPTION_GROUPS))
+    json_object_set_new(scene, "groups", json_boolean(options->groups));
   json_object_set_new(scene, "camera", camera_object(camera));
   json_object_set_new(scene, "size", size_array(options->size));
   json_object_set_new(scene, "samples", json_integer((json_int_t)options->samples));

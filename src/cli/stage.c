@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "stage.h"
 
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli.h"
 #include "progress.h"
@@ -19,52 +21,129 @@ int stage_begin(Stage *stage, const RenderOptions *options) {
   } else if (render_options_given(options, OPTION_OPACITY_MODEL)) {
     cli_warning("a preset states extinction: --opacity-model has no effect");
   }
-  return CLI_DONE;
+  return cli_verdict(CLI_DONE);
 }
 
-int stage_read(Stage *stage, const RenderOptions *options) {
+/* The dataset and its field or coefficients; `step` NULL: the one that the options name. */
+static int read_field(Stage *stage, const RenderOptions *options, const int64_t *step) {
   const double start = cli_seconds();
   const CliVtk *vtk = cli_vtk();
-  if (!vtk)
-    return CLI_FAILED;
   const char *array = NULL;
   TetcastDatasetDesc desc = vtk->dataset_desc_default();
   render_option_dataset(options->block, options->time, options->merge_tolerance, &desc);
   desc.subdivision = (int)options->subdivide;
+  desc.cell_to_point = options->cell_to_point;
+  desc.only = stage->array; /* of the step before */
+  if (step) {
+    desc.step = *step;
+    desc.time = NAN;
+  }
   TetcastStatus status = vtk->dataset_read(stage->context, options->input, &desc, &stage->dataset);
   if (status == TETCAST_OK)
-    status = vtk->dataset_field(stage->dataset, options->array, &stage->field, &array);
-  if (status == TETCAST_OK) {
-    stage->array = cli_duplicate(array);
-    status = vtk->dataset_mesh(stage->dataset, &stage->mesh);
+    stage->step = vtk->dataset_step(stage->dataset);
+  if (status == TETCAST_OK && render_options_direct(options)) {
+    if (!coefficients_read(stage->dataset, options, &stage->coefficients))
+      return CLI_FAILED;
+  } else if (status == TETCAST_OK) {
+    status = vtk->dataset_field(stage->dataset, stage->array ? stage->array : options->array, &stage->field, &array);
+    if (status == TETCAST_OK && !stage->array)
+      stage->array = cli_duplicate(array);
   }
   stage->read_seconds = cli_seconds() - start;
   return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }
 
+static int read_dataset(Stage *stage, const RenderOptions *options, const int64_t *step) {
+  if (!cli_vtk())
+    return CLI_FAILED;
+  const int code = read_field(stage, options, step);
+  if (code != CLI_DONE)
+    return code;
+  const double start = cli_seconds();
+  const TetcastStatus status = cli_vtk()->dataset_mesh(stage->dataset, &stage->mesh);
+  stage->read_seconds += cli_seconds() - start;
+  return status == TETCAST_OK ? cli_verdict(CLI_DONE) : cli_failed(status);
+}
+
+int stage_read(Stage *stage, const RenderOptions *options) {
+  return read_dataset(stage, options, NULL);
+}
+
+int stage_read_step(Stage *stage, const RenderOptions *options, int64_t step) {
+  if (stage->mesh && stage->step == step)
+    return CLI_DONE;
+  stage_drop_dataset(stage);
+  return read_dataset(stage, options, &step);
+}
+
+static double mean_of(const TetcastField *field) {
+  const int64_t count = tetcast_field_values(field).count;
+  double sum = 0, finite = 0;
+  for (int64_t i = 0; i < count; i++) {
+    const double value = tetcast_field_value(field, i);
+    if (!isfinite(value))
+      continue;
+    finite++;
+    sum += (value - sum) / finite; /* which can't overflow where the values' own differences don't */
+  }
+  return sum;
+}
+
+int stage_read_values(Stage *stage, const RenderOptions *options, int64_t step, StageValues *values) {
+  if (!stage->field || stage->step != step) {
+    stage_drop_dataset(stage);
+    const int code = read_field(stage, options, &step);
+    if (code != CLI_DONE)
+      return code;
+  }
+  tetcast_field_range(stage->field, values->range, &values->nonfinite);
+  values->count = tetcast_field_values(stage->field).count;
+  values->mean = mean_of(stage->field);
+  return cli_verdict(CLI_DONE);
+}
+
+/* 64 bits that two meshes share by a chance of 2^-64, unless they have the same numbers. */
+static uint64_t mix(uint64_t hash, const TetcastArray *array, size_t row) {
+  for (int64_t i = 0; i < array->count; i++)
+    for (size_t k = 0; k < row; k += sizeof(uint32_t)) {
+      uint32_t word;
+      memcpy(&word, (const char *)array->data + i * array->stride + k, sizeof word);
+      hash = (hash ^ word) * 0x9E3779B97F4A7C15u;
+      hash ^= hash >> 32;
+    }
+  return hash ^ (uint64_t)array->count;
+}
+
+static uint64_t fingerprint_of(const TetcastMesh *mesh) {
+  const TetcastArray vertices = tetcast_mesh_vertices(mesh), tetrahedra = tetcast_mesh_tetrahedra(mesh);
+  const bool wide = tetrahedra.type == TETCAST_TYPE_INT64 || tetrahedra.type == TETCAST_TYPE_UINT64;
+  const uint64_t hash = mix(1, &vertices, 3 * (vertices.type == TETCAST_TYPE_FLOAT64 ? sizeof(double) : sizeof(float)));
+  return mix(hash, &tetrahedra, 4 * (wide ? sizeof(int64_t) : sizeof(int32_t)));
+}
+
 static TetcastStatus create_volume(Stage *stage, const RenderOptions *options) {
+  const uint64_t fingerprint = stage->of_series ? fingerprint_of(stage->mesh) : 0;
+  if (stage->volume && stage->fingerprint == fingerprint)
+    return TETCAST_OK;
+  tetcast_scene_destroy(&stage->scene);
+  tetcast_volume_destroy(&stage->volume);
+  stage->fingerprint = fingerprint;
   TetcastVolumeDesc desc = tetcast_volume_desc_default();
   desc.traversal = (TetcastTraversal)options->traversal;
   desc.progress = cli_progress("preparing");
   TetcastStatus status = tetcast_volume_create(stage->context, stage->mesh, &desc, &stage->volume);
   cli_progress_clear();
-  if (status == TETCAST_OK)
-    status = tetcast_volume_set_field(stage->volume, stage->field);
-  if (status == TETCAST_OK)
-    tetcast_volume_info(stage->volume, &stage->info);
   return status;
 }
 
-static TetcastStatus create_scene(Stage *stage, const RenderOptions *options) {
+static TetcastStatus set_transfer_function(Stage *stage, const RenderOptions *options, const double *range) {
   TetcastStatus status = TETCAST_OK;
   if (!stage->transfer_function) {
-    const double *range = render_options_given(options, OPTION_RANGE) ? options->range : stage->info.field_range;
-    const char *preset = render_options_given(options, OPTION_PRESET) ? options->preset : "viridis";
-    status = tetcast_transfer_function_create_preset(stage->context, stage->volume, preset, range[0], range[1],
-                                                     &stage->transfer_function);
+    if (render_options_range(options) == RANGE_FIXED)
+      range = options->range;
+    status = tetcast_transfer_function_create_preset(stage->context, stage->volume, render_options_preset(options), range[0],
+                                                     range[1], &stage->transfer_function);
   }
-  if (status == TETCAST_OK)
-    status = tetcast_scene_create(stage->context, stage->volume, &stage->scene);
   if (status == TETCAST_OK)
     status = tetcast_scene_set_transfer_function(stage->scene, stage->transfer_function);
   return status;
@@ -74,20 +153,31 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
   const double start = cli_seconds();
   cli_interrupt_hold(true);
   TetcastStatus status = create_volume(stage, options);
+  if (status == TETCAST_OK && !stage->scene)
+    status = tetcast_scene_create(stage->context, stage->volume, &stage->scene);
+  if (status == TETCAST_OK)
+    status = stage->field ? tetcast_volume_set_field(stage->volume, stage->field)
+                          : coefficients_set(stage->scene, options, &stage->coefficients);
   if (status != TETCAST_OK)
     return cli_failed(status);
+  tetcast_volume_info(stage->volume, &stage->info);
   if (stage->info.field_nonfinite > 0)
     cli_warning("array %s: %lld values are NaN or infinite; the cells they touch are transparent", stage->array,
                 (long long)stage->info.field_nonfinite);
-  if (!view_complete(options, stage->info.bounds, &stage->camera))
-    return CLI_FAILED;
-  status = create_scene(stage, options);
   stage->prepare_seconds = cli_seconds() - start;
+  return view_complete(options, stage->info.bounds, &stage->camera) ? cli_verdict(CLI_DONE) : CLI_FAILED;
+}
+
+int stage_shade(Stage *stage, const RenderOptions *options, const double range[2]) {
+  const double start = cli_seconds();
+  const TetcastStatus status = render_options_direct(options) ? TETCAST_OK : set_transfer_function(stage, options, range);
+  stage->prepare_seconds += cli_seconds() - start;
   return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }
 
 void stage_drop_dataset(Stage *stage) {
   tetcast_field_destroy(&stage->field);
+  coefficients_release(&stage->coefficients);
   tetcast_mesh_destroy(&stage->mesh);
   if (stage->dataset)
     cli_vtk()->dataset_destroy(&stage->dataset);

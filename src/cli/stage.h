@@ -6,28 +6,49 @@
 #include <tetcast/tetcast.h>
 
 #include "adapter.h"
+#include "coefficients.h"
 #include "render_options.h"
 
 typedef struct Stage {
   TetcastContext *context;
-  TetcastDataset *dataset; /* these three only until stage_drop_dataset() */
+  TetcastDataset *dataset; /* these four only until stage_drop_dataset() */
   TetcastMesh *mesh;
-  TetcastField *field;
+  TetcastField *field;        /* NULL: coefficients instead */
+  Coefficients coefficients;
   TetcastVolume *volume;
   TetcastVolumeInfo info;
   TetcastTransferFunction *transfer_function;
   TetcastScene *scene;
   TetcastCamera camera;
-  char *array; /* what was read, as --array would name it */
+  char *array; /* what was read, as --array would name it; NULL: coefficients */
   double read_seconds, prepare_seconds;
+  /* for series */
+  int64_t step;         /* that was read */
+  bool of_series;       /* the volume and the scene serve the next step as well, if it has the same mesh */
+  uint64_t fingerprint; /* of the volume's mesh */
 } Stage;
 
 /* Each step returns an exit code. The first is what can be known to fail before the mesh is read. */
 int stage_begin(Stage *stage, const RenderOptions *options);
 int stage_read(Stage *stage, const RenderOptions *options);
 
-/* Holds interruptions from here on. */
+/* Reads a step, counted from 0, in place of the one that the options name: of the same array as the step that was read before, if any.
+ * What was read of another one is dropped. */
+int stage_read_step(Stage *stage, const RenderOptions *options, int64_t step);
+
+typedef struct StageValues {
+  int64_t count, nonfinite;
+  double range[2], mean; /* of those that are finite */
+} StageValues;
+
+/* Reads a step for its values alone; stage->mesh is not there then. */
+int stage_read_values(Stage *stage, const RenderOptions *options, int64_t step, StageValues *values);
+
+/* Prepares the volume, with its field or the scene's coefficients, and completes the camera. Holds interruptions from here on. */
 int stage_prepare(Stage *stage, const RenderOptions *options);
+
+/* Gives the scene its transfer function, if it has no coefficients; if there is none yet, for the range that the options state, or `range`. */
+int stage_shade(Stage *stage, const RenderOptions *options, const double range[2]);
 
 /* Gives back the memory of what was read; the scene does not need it. */
 void stage_drop_dataset(Stage *stage);

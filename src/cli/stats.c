@@ -6,7 +6,7 @@
 
 #include "json.h"
 
-bool stats_write(const char *path, const RunStats *stats) {
+json_t *stats_object(const RunStats *stats) {
   struct rusage usage;
   getrusage(RUSAGE_SELF, &usage);
   json_t *object = json_object();
@@ -28,5 +28,5 @@ bool stats_write(const char *path, const RunStats *stats) {
   json_object_set_new(object, "precision", json_string(stats->render.precision));
   json_object_set_new(object, "traversal",
                       json_string(stats->volume.traversal == TETCAST_TRAVERSAL_FACES ? "faces" : "shell"));
-  return cli_json_write(path, object);
+  return object;
 }

@@ -4,6 +4,8 @@
 
 #include <stdbool.h>
 
+#include <jansson.h>
+
 #include <tetcast/scene.h>
 
 typedef struct RunStats {
@@ -15,7 +17,7 @@ typedef struct RunStats {
   TetcastVolumeInfo volume;
 } RunStats;
 
-/* Writes the statistics as JSON. False after a message. */
-bool stats_write(const char *path, const RunStats *stats);
+/* The statistics as JSON, for cli_json_write(). */
+json_t *stats_object(const RunStats *stats);
 
 #endif

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes special_table.h: piecewise Chebyshev fits, as polynomials, of two functions on [0, 1].
+"""Makes special_table.h: piecewise Chebyshev fits, as polynomials, of functions on [0, 1].
 
-  mills:  (1 + x) sqrt(pi/2) erfcx(x/sqrt(2)), x = 1/t - 1        Mills' ratio of the normal distribution, scaled to lie in [1, 1.26]
+  mills:  (1 + x) sqrt(pi/2) erfcx(x/sqrt(2)), x = 1/t - 1        Mills' ratio M of the normal distribution, scaled to lie in [1, 1.26]
   dawson: 2 (2 + y) D(y), y = 2 (1/t - 1)                         Dawson's integral, scaled to lie in [0, 3.27]
+  mills moment:  (1 + x)^2 (1 - x M(x))                           -M', scaled to lie in [1, 1.6]
+  dawson moment: 2 (2 + y)^2 (2 y D(y) - 1)                       -D', scaled to lie in [-8, 2]
 
 The scales are such that nothing is left to be done but a division (segment.c). Needs mpmath.
 """
@@ -46,6 +48,37 @@ def dawson(t):
         return (2 + y) * mp.sqrt(mp.pi) * mp.exp(-y * y) * mp.erfi(y)
 
 
+def mills_moment(t):
+    if t == 0:
+        return mp.mpf(1)
+    x = 1 / t - 1
+    if t < mp.mpf(1) / 200:
+        s = term = 1 / (x * x)
+        for k in range(2, 60):
+            term *= -(2 * k - 1) / (x * x)
+            s += term
+            if abs(term) < mp.mpf(10) ** -58:
+                break
+        return (1 + x) ** 2 * s
+    return (1 + x) ** 2 * (1 - x * mills(t) / (1 + x))
+
+
+def dawson_moment(t):
+    if t == 0:
+        return mp.mpf(1)
+    y = 2 * (1 / t - 1)
+    if y > 30:  # 2 y D(y) - 1 ~ sum (2k-1)!! / (2 y^2)^k
+        s = term = 1 / (2 * y * y)
+        for k in range(2, 400):
+            new = term * (2 * k - 1) / (2 * y * y)
+            if abs(new) > abs(term):
+                break
+            term = new
+            s += term
+        return 2 * (2 + y) ** 2 * s
+    return 2 * (2 + y) ** 2 * (y * dawson(t) / (2 + y) - 1)
+
+
 def fit(function, lower, upper):
     """Monomial coefficients in v = 2 (t - lower) / (upper - lower) - 1 of the Chebyshev interpolant."""
     n = DEGREE + 1
@@ -73,11 +106,12 @@ def fit(function, lower, upper):
 
 
 def main():
-    functions = (("mills", mills, 64), ("dawson", dawson, 192))
+    functions = (("mills", mills, 64), ("dawson", dawson, 192), ("mills moment", mills_moment, 64),
+                 ("dawson moment", dawson_moment, 192))
     print("/* SPDX-License-Identifier: Apache-2.0 */")
     print("/* Made by make_special.py. Row i of a function's n covers t in [i, i + 1] / n; coefficients of rising powers\n"
           " * of v in [-1, 1]. */")
-    print("const _Alignas(64) double tc_special_table[TC_MILLS_ROWS + TC_DAWSON_ROWS][TC_SPECIAL_TERMS] = {")
+    print("const _Alignas(64) double tc_special_table[2 * TC_SPECIAL_ROWS][TC_SPECIAL_TERMS] = {")
     for name, function, pieces in functions:
         rows, worst = [], 0
         for i in range(pieces):

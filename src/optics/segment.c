@@ -33,29 +33,42 @@ static double psi(double a, double a1, double transmittance) {
   return transmittance > 0 ? near - transmittance * (table_value(first, rows, r / (r + a1)) / (r + a1)) : near;
 }
 
-/* w₁ − w₀ for T < 1, by the Taylor series of e^−τ about the middle. With v = 2u − 1, d = (a1 − a)/2:
- *     w₁ − w₀ = ½ e^−τ(0) ∫₋₁¹ v (T + d v) E(v) dv,   E = exp(−(T v + d v²/2)/2) = Σ eₙ vⁿ,
- *     (n + 1) eₙ₊₁ = −(T eₙ + d eₙ₋₁)/2,   τ(0) = T/2 − d/4.
- * |d| ≤ T, so |eₙ| ≲ (T/4)^(n/2)/⌊n/2⌋!, from which the number of terms for an error below 1e-17 · T follows. */
-static double weight_difference(double t, double d) {
+/* ∫₀¹ e^−τ du for T < 1 and its parts that are odd and even about the middle, by the Taylor series there. With v = 2u − 1, d = (a1 − a)/2:
+ *     e^−τ = e^−τ(0) E(v),   E = exp(−(T v + d v²/2)/2) = Σ eₙ vⁿ,   (n + 1) eₙ₊₁ = −(T eₙ + d eₙ₋₁)/2,   τ(0) = T/2 − d/4.
+ * |d| ≤ T, so |eₙ| ≲ (T/4)^(n/2)/⌊n/2⌋!, from which the number of terms for an error below 1e-16 follows. */
+typedef struct Series {
+  double middle;            /* e^−τ(0) */
+  double zero, first, second; /* ½ ∫₋₁¹ E, v E, v² E dv */
+} Series;
+
+static inline Series series(double t, double d) {
   static const double reciprocal[] = {0,         1,         1. / 2,    1. / 3,    1. / 4,    1. / 5,    1. / 6,
                                       1. / 7,    1. / 8,    1. / 9,    1. / 10,   1. / 11,   1. / 12,   1. / 13,
                                       1. / 14,   1. / 15,   1. / 16,   1. / 17,   1. / 18,   1. / 19,   1. / 20,
                                       1. / 21,   1. / 22,   1. / 23,   1. / 24,   1. / 25,   1. / 26,   1. / 27,
                                       1. / 28,   1. / 29};
   const int terms = t < 1e-4 ? 6 : t < 0.01 ? 10 : t < 0.1 ? 14 : t < 0.3 ? 18 : 26;
-  double before = 0, e = 1, odd = 0, even = 0;
+  double before = 0, e = 1;
+  Series s = {.zero = 0};
   for (int n = 0; n < terms; n += 2) {
-    even += e * reciprocal[n + 3];
+    s.zero += e * reciprocal[n + 1];
+    s.second += e * reciprocal[n + 3];
     double next = -0.5 * (t * e + d * before) * reciprocal[n + 1];
     before = e;
     e = next;
-    odd += e * reciprocal[n + 3];
+    s.first += e * reciprocal[n + 3];
     next = -0.5 * (t * e + d * before) * reciprocal[n + 2];
     before = e;
     e = next;
   }
-  return exp(0.25 * d - 0.5 * t) * (t * odd + d * even);
+  s.middle = exp(0.25 * d - 0.5 * t);
+  return s;
+}
+
+/* w₁ − w₀ = ½ e^−τ(0) ∫₋₁¹ v (T + d v) E(v) dv for T < 1. */
+static double weight_difference(double t, double d) {
+  const Series s = series(t, d);
+  return s.middle * (t * s.first + d * s.second);
 }
 
 TcSegment tc_segment(double a, double a1) {
@@ -106,4 +119,43 @@ TcSegment tc_segment_constant(double depth) {
   segment.w0 = segment.alpha;
   segment.w1 = 0;
   return segment;
+}
+
+/* For T ≥ 1, as psi(): with g = −f' for rising and falling extinction alike, integration by parts gives
+ *     m₁ = g(a) − e^−T (f(a1) + g(a1)),   m₀ = f(a) − g(a) + e^−T g(a1),
+ * where g is q(t)/(r + x)², and q = p + t p' is in the second half of the table. The largest term is at most seven times the result, at T = 1.
+ *
+ * Errors, in units of 2^−53: t 2, a quotient's 1/(r + x) 2, a table's value 4, so f 8 and g 10; e^−T, T's own rounding included, 3 where
+ * it counts; sums 2. With the terms' sizes at T = 1, where they are worst: below 45, or 5e-15. Below T = 1 the series is off by 6 relative to
+ * its largest term, and e^−τ(0) by 3, of which no more than a factor of 2 is lost in m₀ and m₁. */
+static void deep_moments(double a, double a1, TcMoments *m) {
+  const double b = a1 - a, r = sqrt(b >= 0 ? b : -8 * b);
+  const int first = b >= 0 ? 0 : TC_MILLS_ROWS, rows = b >= 0 ? TC_MILLS_ROWS : TC_DAWSON_ROWS;
+  const double near = 1 / (r + a), t = r * near;
+  const double f = table_value(first, rows, t) * near, g = table_value(TC_SPECIAL_ROWS + first, rows, t) * near * near;
+  m->m0 = f - g;
+  m->m1 = g;
+  if (m->transmittance > 0) {
+    const double far = 1 / (r + a1), t1 = r * far;
+    const double f1 = table_value(first, rows, t1) * far, g1 = table_value(TC_SPECIAL_ROWS + first, rows, t1) * far * far;
+    m->m0 += m->transmittance * g1;
+    m->m1 -= m->transmittance * (f1 + g1);
+  }
+}
+
+TcMoments tc_segment_moments(double a, double a1) {
+  if (a > TC_LARGEST_DENSITY) a = TC_LARGEST_DENSITY;
+  if (a1 > TC_LARGEST_DENSITY) a1 = TC_LARGEST_DENSITY;
+  TcMoments m;
+  m.depth = 0.5 * a + 0.5 * a1;
+  if (m.depth < 1) {
+    const Series s = series(m.depth, 0.5 * a1 - 0.5 * a);
+    m.m0 = 0.5 * s.middle * (s.zero - s.first);
+    m.m1 = 0.5 * s.middle * (s.zero + s.first);
+    m.transmittance = 1 + expm1(-m.depth);
+    return m;
+  }
+  m.transmittance = exp(-m.depth);
+  deep_moments(a, a1, &m);
+  return m;
 }

@@ -27,8 +27,25 @@ TcSegment tc_segment_thin(double a, double a1);
 /* The same for a = a1 = depth: no Ψ. */
 TcSegment tc_segment_constant(double depth);
 
-/* Mills' ratio and Dawson's integral, for Ψ (segment.c, make_special.py). */
-enum { TC_MILLS_ROWS = 64, TC_DAWSON_ROWS = 192, TC_SPECIAL_TERMS = 8 };
-extern const double tc_special_table[TC_MILLS_ROWS + TC_DAWSON_ROWS][TC_SPECIAL_TERMS];
+/* What an emission j per length that is linear on the segment, too, and given apart from the extinction, sends out of it:
+ *
+ *     h ∫₀¹ ((1 − u) j₀ + u j₁) e^−τ(u) du = h (j₀ m₀ + j₁ m₁),     m₀ + m₁ = Ψ,  a m₀ + a1 m₁ = 1 − e^−T
+ *
+ * Without extinction m₀ = m₁ = ½, exactly. Both are integrals of something ≥ 0 and are computed without cancellation. */
+typedef struct TcMoments {
+  double m0, m1;        /* in [0, ½]; those below 1e-307 denormal or 0 */
+  double transmittance; /* e^−T */
+  double depth;         /* T */
+} TcMoments;
+
+/* Largest a of tc_segment_moments(): nothing that is computed from two of them overflows. */
+#define TC_LARGEST_DENSITY 0x1p1019
+
+/* a, a1 ≥ 0, not NaN; values above TC_LARGEST_DENSITY count as that. Relative errors of m0 and m1 are below 5e-15. */
+TcMoments tc_segment_moments(double a, double a1);
+
+/* Mills' ratio and Dawson's integral, for Ψ, then the negatives of their derivatives, for its moments (segment.c, make_special.py). */
+enum { TC_MILLS_ROWS = 64, TC_DAWSON_ROWS = 192, TC_SPECIAL_ROWS = TC_MILLS_ROWS + TC_DAWSON_ROWS, TC_SPECIAL_TERMS = 8 };
+extern const double tc_special_table[2 * TC_SPECIAL_ROWS][TC_SPECIAL_TERMS];
 
 #endif

@@ -23,12 +23,15 @@ TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *d
     memset(frame->memory, 0, (size_t)(row * desc->height));
     frame->pixels = frame->memory;
   }
-  if (desc->channels & TETCAST_CHANNEL_ERROR) {
-    if (!tc_allocate_array(context, &frame->error, desc->width * desc->height, tc_type_size(desc->type), "error channel")) {
+  frame->groups = desc->groups;
+  for (int i = 0; i < TC_CHANNELS; ++i) {
+    if (!(desc->channels >> i & 1)) continue;
+    const size_t pixel = (size_t)tc_frame_depth(frame, (TetcastChannel)(1 << i)) * tc_type_size(desc->type);
+    if (!tc_allocate_array(context, &frame->channel[i], desc->width * desc->height, pixel, "channel")) {
       tc_frame_destroy(frame);
       return TETCAST_ERROR_MEMORY;
     }
-    memset(frame->error, 0, (size_t)(desc->width * desc->height) * tc_type_size(desc->type));
+    memset(frame->channel[i], 0, (size_t)(desc->width * desc->height) * pixel);
   }
   *out = frame;
   return TETCAST_OK;
@@ -37,22 +40,33 @@ TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *d
 void tc_frame_destroy(TetcastFrame *frame) {
   if (!frame) return;
   tc_release(frame->context, frame->memory);
-  tc_release(frame->context, frame->error);
+  for (int i = 0; i < TC_CHANNELS; ++i) tc_release(frame->context, frame->channel[i]);
   tc_release(frame->context, frame);
+}
+
+void tc_frame_put(TetcastFrame *frame, TetcastChannel channel, int64_t x, int64_t y, const double *values) {
+  void *data = tc_frame_channel(frame, channel);
+  if (!data) return;
+  const int count = tc_frame_depth(frame, channel);
+  const int64_t first = (y * frame->width + x) * count;
+  for (int i = 0; i < count; ++i) {
+    if (frame->type == TETCAST_TYPE_FLOAT64) ((double *)data)[first + i] = values[i];
+    else ((float *)data)[first + i] = (float)values[i];
+  }
 }
 
 double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, const double rgba[4], double error) {
   char *row = (char *)frame->pixels + y * frame->row_stride;
+  double bound = error;
   if (frame->type == TETCAST_TYPE_FLOAT64) {
     memcpy(row + x * 4 * (int64_t)sizeof(double), rgba, 4 * sizeof(double));
-    if (frame->error) ((double *)frame->error)[y * frame->width + x] = error;
-    return error;
+  } else {
+    const float pixel[4] = {(float)rgba[0], (float)rgba[1], (float)rgba[2], (float)rgba[3]};
+    memcpy(row + x * 4 * (int64_t)sizeof(float), pixel, sizeof pixel);
+    double rounding = 0;
+    for (int k = 0; k < 4; ++k) rounding = fmax(rounding, fabs((double)pixel[k] - rgba[k]));
+    bound = error + rounding > 0 ? (double)nextafterf((float)(error + rounding), INFINITY) : 0;
   }
-  const float pixel[4] = {(float)rgba[0], (float)rgba[1], (float)rgba[2], (float)rgba[3]};
-  memcpy(row + x * 4 * (int64_t)sizeof(float), pixel, sizeof pixel);
-  double rounding = 0;
-  for (int k = 0; k < 4; ++k) rounding = fmax(rounding, fabs((double)pixel[k] - rgba[k]));
-  const float bound = error + rounding > 0 ? nextafterf((float)(error + rounding), INFINITY) : 0;
-  if (frame->error) ((float *)frame->error)[y * frame->width + x] = bound;
-  return (double)bound;
+  tc_frame_put(frame, TETCAST_CHANNEL_ERROR, x, y, &bound);
+  return bound;
 }

@@ -35,32 +35,34 @@ static void add_segment(const TetcastVolume *volume, const TcPieces *pieces, uin
   *seen = z1;
 }
 
-/* Each path once, from the end that comes first. */
+/* A ray on its way: where it was last, and what it gathers. */
+typedef struct Cast {
+  const TetcastVolume *volume;
+  const TcPieces *pieces;
+  const TcRay *ray;
+  TcWorker *worker;
+  TcLight *light;
+  double z, s, seen;
+} Cast;
+
+static void enter_path(void *data, const TcWalk *walk) {
+  Cast *cast = data;
+  cast->z = walk->z;
+  cast->s = walk->s;
+  cast->seen = cast->ray->near > walk->z ? cast->ray->near : walk->z;
+}
+
+static bool cross_cell(void *data, uint32_t cell, const TcWalk *walk) {
+  Cast *cast = data;
+  add_segment(cast->volume, cast->pieces, cell, cast->z, walk->z, cast->s, walk->s, &cast->seen, cast->worker, cast->light);
+  cast->z = walk->z;
+  cast->s = walk->s;
+  return !tc_light_opaque(cast->light, cast->pieces);
+}
+
 static void cast_shell(const TcShell *shell, const TcPieces *pieces, const TcRay *ray, TcWorker *worker, TcLight *light) {
-  const TetcastVolume *volume = shell->volume;
-  TcSpans *faces = worker->spans;
-  for (int64_t i = 0; i < faces->count; ++i) faces->data[i].done = false;
-  for (int64_t i = 0; i < faces->count; ++i) {
-    if (faces->data[i].done) continue;
-    TcWalk walk;
-    tc_walk_begin(volume, ray, &shell->faces[faces->data[i].id], &walk);
-    uint32_t cell;
-    double seen = ray->near > walk.z ? ray->near : walk.z;
-    do {
-      const double z = walk.z, s = walk.s;
-      cell = walk.cell;
-      if (!tc_walk_step(volume, ray, &walk)) {
-        ++worker->lost;
-        return;
-      }
-      add_segment(volume, pieces, cell, z, walk.z, s, walk.s, &seen, worker, light);
-      if (tc_light_opaque(light, pieces)) return;
-    } while (!tc_shell_ends(shell, walk.cell));
-    const uint32_t vertex_xor = walk.v[0].id ^ walk.v[1].id ^ walk.v[2].id;
-    for (int64_t j = i + 1; j < faces->count; ++j) {
-      if (tc_shell_face_is(&shell->faces[faces->data[j].id], cell, vertex_xor)) faces->data[j].done = true;
-    }
-  }
+  Cast cast = {.volume = shell->volume, .pieces = pieces, .ray = ray, .worker = worker, .light = light};
+  worker->lost += !tc_walk_paths(shell, ray, worker->spans, enter_path, cross_cell, &cast);
 }
 
 static void cast_faces(const TetcastVolume *volume, const TcPieces *pieces, const TcRay *ray, TcWorker *worker, TcLight *light) {
@@ -84,18 +86,15 @@ bool CAST(const TcShell *shell, const TcPieces *pieces, const TcLine *line, TcWo
 
 bool KERNEL(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker) {
   const int samples = job->samples_x * job->samples_y;
-  const double columns = (double)(job->width * job->samples_x), rows = (double)(job->height * job->samples_y);
   for (int64_t y = y0; y < y1; ++y) {
     for (int64_t x = x0; x < x1; ++x) {
       double sum[4] = {0, 0, 0, 0}, error = 0;
       for (int i = 0; i < samples; ++i) {
-        const double column = (double)(x * job->samples_x + i % job->samples_x) + 0.5;
-        const double row = (double)(y * job->samples_y + i / job->samples_x) + 0.5;
         double rgba[4];
         const int64_t segments = worker->segments;
         TcLine line;
         TcLight light;
-        tc_view_line(&job->view, 2 * column / columns - 1, 1 - 2 * row / rows, &line);
+        tc_job_line(job, x, y, i, &line);
         if (!CAST(job->shell, job->pieces, &line, worker, &light)) return false;
         tc_light_end(&light, rgba);
         error += tc_tolerance_bound(&worker->tolerance, &light, rgba[3], worker->segments - segments);

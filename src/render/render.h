@@ -8,8 +8,11 @@
 
 #include "base/base.h"
 #include "optics/tolerance.h"
+#include "traverse/coefficients.h"
 #include "traverse/shell.h"
 #include "traverse/trace.h"
+
+enum { TC_CHANNELS = 5 };
 
 struct TetcastFrame {
   TetcastContext *context;
@@ -17,13 +20,27 @@ struct TetcastFrame {
   TetcastType type;
   void *pixels;
   void *memory; /* NULL when the pixels are borrowed */
-  void *error;  /* [height][width] of type, or NULL */
+  int groups;
+  void *channel[TC_CHANNELS]; /* by their bits' numbers; NULL: not asked for */
 };
+
+/* How many values a pixel has in a channel. */
+static inline int tc_frame_depth(const TetcastFrame *frame, TetcastChannel channel) {
+  return channel == TETCAST_CHANNEL_ERROR || channel == TETCAST_CHANNEL_PATH_LENGTH ? 1 : frame->groups;
+}
+
+static inline void *tc_frame_channel(const TetcastFrame *frame, TetcastChannel channel) {
+  for (int i = 0; i < TC_CHANNELS; ++i) {
+    if (channel == (TetcastChannel)(1 << i)) return frame->channel[i];
+  }
+  return NULL;
+}
 
 struct TetcastScene {
   TetcastContext *context;
   const TetcastVolume *volume;
-  TetcastTransferFunction *transfer; /* NULL: none set yet */
+  TetcastTransferFunction *transfer; /* NULL: none set yet, or coefficients */
+  TcCoefficients *coefficients;      /* NULL: none set yet, or a transfer function */
 
   /* What follows from the volume's field and the transfer function; made by the first frame that needs it. */
   pthread_mutex_t mutex;
@@ -49,6 +66,8 @@ TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *d
 void tc_frame_destroy(TetcastFrame *frame);
 /* `error` is a bound on that of rgba. Returns one on that of the pixel, rounding to its type included. */
 double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, const double rgba[4], double error);
+/* Stores a pixel's values of a channel, if the frame has it. */
+void tc_frame_put(TetcastFrame *frame, TetcastChannel channel, int64_t x, int64_t y, const double *values);
 
 enum {
   TC_TILE = 16,   /* pixels a side, at most, of what a kernel renders at once */
@@ -63,22 +82,35 @@ typedef struct TcWorker {
   TcTolerance tolerance;
   int64_t segments, lost;
   double error; /* largest bound so far */
+  struct TcDirect *direct; /* of the kernel for coefficients */
 } TcWorker;
 
 /* What a frame is made from; the same for all kernels. */
 typedef struct TcJob {
   const TcShell *shell;
   const TcPieces *pieces; /* in the volume's units */
+  const TcCoefficients *coefficients; /* instead of pieces */
   TcView view;
   int64_t width, height;
   int samples_x, samples_y;
   TetcastFrame *frame;
 } TcJob;
 
+/* The line of sample i of pixel (x, y). */
+static inline void tc_job_line(const TcJob *job, int64_t x, int64_t y, int i, TcLine *line) {
+  const double columns = (double)(job->width * job->samples_x), rows = (double)(job->height * job->samples_y);
+  const double column = (double)(x * job->samples_x + i % job->samples_x) + 0.5;
+  const double row = (double)(y * job->samples_y + i / job->samples_x) + 0.5;
+  tc_view_line(&job->view, 2 * column / columns - 1, 1 - 2 * row / rows, line);
+}
+
 /* A kernel renders the pixels [x0, x1) × [y0, y1). False: out of memory. */
 typedef bool TcKernel(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker);
 
 TcKernel tc_kernel_exact, tc_kernel_sampled;
+TcKernel tc_kernel_direct; /* coefficients; its workers each need a … */
+struct TcDirect *tc_direct_create(TetcastContext *context, const TcCoefficients *coefficients); /* NULL: out of memory */
+void tc_direct_destroy(struct TcDirect *direct);
 TcKernel tc_kernel_baseline, tc_kernel_avx2, tc_kernel_avx512; /* exact, by packets (packet_tmpl.h); the latter where the target has them */
 
 /* The light of one ray: the slow and simple way, in which a kernel may fall back on and against which it is tested. */
@@ -93,6 +125,7 @@ TcPacketCast tc_packet_baseline, tc_packet_avx2, tc_packet_avx512;
 TetcastStatus tc_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **scene);
 void tc_scene_destroy(TetcastScene *scene);
 TetcastStatus tc_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer);
+TetcastStatus tc_scene_set_coefficients(TetcastScene *scene, const TetcastCoefficientsDesc *desc);
 TetcastStatus tc_scene_render(TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
                               TetcastFrame *frame, TetcastRenderStats *stats);
 

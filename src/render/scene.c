@@ -44,17 +44,31 @@ void tc_scene_destroy(TetcastScene *scene) {
   forget(scene);
   pthread_mutex_destroy(&scene->mutex);
   tc_transfer_destroy(scene->transfer);
+  tc_coefficients_destroy(scene->coefficients);
   tc_release(scene->context, scene);
+}
+
+/* One of the two, or neither. */
+static void replace(TetcastScene *scene, TetcastTransferFunction *transfer, TcCoefficients *coefficients) {
+  forget(scene);
+  tc_transfer_destroy(scene->transfer);
+  tc_coefficients_destroy(scene->coefficients);
+  scene->transfer = transfer;
+  scene->coefficients = coefficients;
 }
 
 TetcastStatus tc_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer) {
   TetcastTransferFunction *copy;
   const TetcastStatus status = tc_transfer_copy(scene->context, transfer, &copy);
-  if (status) return status;
-  forget(scene);
-  tc_transfer_destroy(scene->transfer);
-  scene->transfer = copy;
-  return TETCAST_OK;
+  if (!status) replace(scene, copy, NULL);
+  return status;
+}
+
+TetcastStatus tc_scene_set_coefficients(TetcastScene *scene, const TetcastCoefficientsDesc *desc) {
+  TcCoefficients *copy;
+  const TetcastStatus status = tc_coefficients_create(scene->volume, desc, &copy);
+  if (!status) replace(scene, NULL, copy);
+  return status;
 }
 
 /* ── a frame ── */
@@ -109,6 +123,15 @@ static TcKernel *choose_kernel(const TcJob *job, TetcastIsa most, const char **n
   return tc_kernel_exact;
 }
 
+/* What only the kernel for coefficients needs. */
+static bool create_direct(TetcastContext *context, const Render *render, int threads) {
+  for (int i = 0; render->job.coefficients && i < threads; ++i) {
+    render->workers[i].direct = tc_direct_create(context, render->job.coefficients);
+    if (!render->workers[i].direct) return false;
+  }
+  return true;
+}
+
 /* Renders with all that is needed at hand, and sums up what the workers counted. */
 static TetcastStatus run(TetcastContext *context, Render *render, const TcWorker *start, const TetcastProgress *progress,
                          TetcastRenderStats *stats) {
@@ -119,7 +142,9 @@ static TetcastStatus run(TetcastContext *context, Render *render, const TcWorker
   for (int i = 0; i < threads; ++i) render->workers[i] = *start;
   render->tiles_x = (render->job.width + TC_TILE - 1) / TC_TILE;
   const int64_t tiles = render->tiles_x * ((render->job.height + TC_TILE - 1) / TC_TILE);
-  TetcastStatus status = tc_parallel_for(context, tiles, 1, render_tiles, render, progress);
+  TetcastStatus status = create_direct(context, render, threads)
+                           ? tc_parallel_for(context, tiles, 1, render_tiles, render, progress)
+                           : tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: groups of a ray");
   for (int i = 0; i < threads; ++i) {
     TcWorker *worker = &render->workers[i];
     stats->segments += worker->segments;
@@ -129,6 +154,7 @@ static TetcastStatus run(TetcastContext *context, Render *render, const TcWorker
       if (worker->spans[j].out_of_memory) status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: hits of a ray");
       tc_spans_clear(&worker->spans[j]);
     }
+    tc_direct_destroy(worker->direct);
   }
   tc_release(context, render->workers);
   return status;
@@ -150,18 +176,22 @@ TetcastStatus tc_scene_render(TetcastScene *scene, const TetcastCamera *camera, 
   TcSampler *sampler = NULL;
   const double aspect = (double)frame->width / (double)frame->height;
   TetcastStatus status = tc_view_create(context, camera, scene->volume, aspect, &job->view);
-  if (!status) status = prepare(scene);
+  if (!status && !scene->coefficients) status = prepare(scene);
   if (!status && !exact) status = tc_sampler_create(context, desc->integrator, desc->integrator_n, &sampler);
-  if (!status) {
+  if (!status && scene->coefficients) {
+    job->shell = &scene->volume->shell;
+    job->coefficients = scene->coefficients;
+    render.kernel = tc_kernel_direct;
+  } else if (!status) {
     job->shell = &scene->shell;
     job->pieces = &scene->scaled->pieces;
     start.sampler = sampler;
     start.tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);
     if (exact) render.kernel = choose_kernel(job, desc->isa, &sum.isa);
-    status = run(context, &render, &start, &desc->progress, &sum);
   }
+  if (!status) status = run(context, &render, &start, &desc->progress, &sum);
   tc_sampler_destroy(sampler);
-  if (!exact) sum.error = NAN;
+  if (!exact || scene->coefficients) sum.error = NAN;
   if (!status && stats) *stats = sum;
   return status;
 }

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "traverse/walk.h"
+
 typedef struct Query {
   const TcShell *shell;
   const TcRay *ray;
@@ -26,12 +28,12 @@ void tc_spans_append(TcSpans *spans, TcSpan span) {
   spans->data[spans->count++] = span;
 }
 
-/* Depth and value where the ray crosses the triangle of three of the points, if it does. */
-static bool crosses(const TcPoint *a, const TcPoint *b, const TcPoint *c, double *z, double *s) {
-  const double ab = tc_edge(a, b), bc = tc_edge(b, c), ca = tc_edge(c, a);
-  if (!tc_inside(ab, bc, ca)) return false;
-  tc_crossing(a, b, c, ab, bc, ca, z, s);
-  return true;
+/* Whether the ray crosses the triangle of three points, and its edges' values. */
+static inline bool crosses(const TcPoint *a, const TcPoint *b, const TcPoint *c, double edge[3]) {
+  edge[0] = tc_edge(a, b);
+  edge[1] = tc_edge(b, c);
+  edge[2] = tc_edge(c, a);
+  return tc_inside(edge[0], edge[1], edge[2]);
 }
 
 static void shell_candidate(void *user, uint32_t i) {
@@ -39,26 +41,39 @@ static void shell_candidate(void *user, uint32_t i) {
   const TcShellFace *face = &query->shell->faces[i];
   TcPoint p[3];
   for (int k = 0; k < 3; ++k) p[k] = tc_project(query->shell->volume, query->ray, face->vertex[k]);
+  double edge[3];
+  if (!crosses(&p[0], &p[1], &p[2], edge)) return;
   TcSpan span = {.id = i};
-  if (!crosses(&p[0], &p[1], &p[2], &span.begin, &span.s0)) return;
+  tc_crossing(&p[0], &p[1], &p[2], edge[0], edge[1], edge[2], &span.begin, &span.s0);
   span.end = span.begin;
   tc_spans_append(query->spans, span);
 }
 
 /* A ray crosses none or exactly two of a cell's faces. */
+bool tc_cross_cell(const TetcastVolume *volume, const TcRay *ray, uint32_t cell, TcWalk face[2]) {
+  const uint32_t *vertex = volume->adjacency.vertices[cell];
+  TcPoint p[4];
+  TcWalk found[2];
+  for (int k = 0; k < 4; ++k) p[k] = tc_project(volume, ray, vertex[k]);
+  int count = 0;
+  for (int k = 0; k < 4 && count < 2; ++k) {
+    const TcPoint *v[3] = {&p[k], &p[(k + 1) & 3], &p[(k + 2) & 3]};
+    if (!crosses(v[0], v[1], v[2], found[count].edge)) continue;
+    for (int j = 0; j < 3; ++j) found[count].v[j] = *v[j];
+    tc_walk_cross(&found[count++]);
+  }
+  if (count < 2) return false;
+  const int first = found[1].z < found[0].z;
+  face[0] = found[first];
+  face[1] = found[!first];
+  return true;
+}
+
 static void cell_candidate(void *user, uint32_t i) {
   Query *query = user;
-  const uint32_t *vertex = query->shell->volume->adjacency.vertices[i];
-  TcPoint p[4];
-  for (int k = 0; k < 4; ++k) p[k] = tc_project(query->shell->volume, query->ray, vertex[k]);
-  double z[2], s[2];
-  int found = 0;
-  for (int k = 0; k < 4 && found < 2; ++k) {
-    found += crosses(&p[k], &p[(k + 1) & 3], &p[(k + 2) & 3], &z[found], &s[found]);
-  }
-  if (found < 2) return;
-  const int first = z[1] < z[0];
-  tc_spans_append(query->spans, (TcSpan){.begin = z[first], .end = z[!first], .s0 = s[first], .s1 = s[!first], .id = i});
+  TcWalk at[2];
+  if (!tc_cross_cell(query->shell->volume, query->ray, i, at)) return;
+  tc_spans_append(query->spans, (TcSpan){.begin = at[0].z, .end = at[1].z, .s0 = at[0].s, .s1 = at[1].s, .id = i});
 }
 
 static int compare_spans(const void *left, const void *right) {

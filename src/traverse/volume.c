@@ -154,6 +154,10 @@ static TetcastStatus build(TetcastVolume *volume, const TetcastMesh *mesh, const
                " duplicates of others", volume->mesh_cell_count - volume->cell_count, volume->adjacency.collapsed,
                volume->adjacency.duplicates);
   }
+  if (volume->adjacency.nonmanifold > 0 && shell_only(volume)) {
+    tc_warning(volume->context, "%" PRId64 " faces have three cells or more, which overlap then: the traversal of faces is right, the shell's may not be",
+               volume->adjacency.nonmanifold);
+  }
   describe(volume, mesh);
   if (!shell_only(volume)) tc_adjacency_drop_links(&volume->adjacency);
   volume->shell = (TcShell){.volume = volume, .faces = volume->adjacency.shell, .count = volume->info.shell_faces};

@@ -5,7 +5,7 @@
 #ifndef TC_TRAVERSE_WALK_H
 #define TC_TRAVERSE_WALK_H
 
-#include "traverse/rayspace.h"
+#include "traverse/trace.h"
 
 /* The ray at a face. v[0], v[1], v[2] lie counter-clockwise around it: edge[k] = v[k] × v[k+1] > 0. */
 typedef struct TcWalk {
@@ -65,5 +65,35 @@ static inline bool tc_shell_ends(const TcShell *shell, uint32_t cell) {
 static inline bool tc_shell_face_is(const TcShellFace *face, uint32_t from, uint32_t vertex_xor) {
   return face->cell == from && (face->vertex[0] ^ face->vertex[1] ^ face->vertex[2]) == vertex_xor;
 }
+
+/* What is done where the ray enters at a shell face, and when it has crossed `cell` and is at the next face; the latter false: enough seen. */
+typedef void TcEnter(void *data, const TcWalk *walk);
+typedef bool TcCross(void *data, uint32_t cell, const TcWalk *walk);
+
+/* Walks each path once, from the end that comes first; `faces` are the shell faces on the ray. False: the ray was lost. Inlined with the two
+ * functions. */
+static inline bool tc_walk_paths(const TcShell *shell, const TcRay *ray, TcSpans *faces, TcEnter *enter, TcCross *cross, void *data) {
+  for (int64_t i = 0; i < faces->count; ++i) faces->data[i].done = false;
+  for (int64_t i = 0; i < faces->count; ++i) {
+    if (faces->data[i].done) continue;
+    TcWalk walk;
+    tc_walk_begin(shell->volume, ray, &shell->faces[faces->data[i].id], &walk);
+    enter(data, &walk);
+    uint32_t cell;
+    do {
+      cell = walk.cell;
+      if (!tc_walk_step(shell->volume, ray, &walk)) return false;
+      if (!cross(data, cell, &walk)) return true;
+    } while (!tc_shell_ends(shell, walk.cell));
+    const uint32_t vertex_xor = walk.v[0].id ^ walk.v[1].id ^ walk.v[2].id;
+    for (int64_t j = i + 1; j < faces->count; ++j) {
+      if (tc_shell_face_is(&shell->faces[faces->data[j].id], cell, vertex_xor)) faces->data[j].done = true;
+    }
+  }
+  return true;
+}
+
+/* The two faces at which the ray enters and leaves a cell of a volume with TETCAST_TRAVERSAL_FACES, by depth. False: it passes. */
+bool tc_cross_cell(const TetcastVolume *volume, const TcRay *ray, uint32_t cell, TcWalk face[2]);
 
 #endif

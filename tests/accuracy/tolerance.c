@@ -142,7 +142,7 @@ static void what_has_no_bound_is_refused(void **state) {
   }
   TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
   frame_desc.width = frame_desc.height = 4;
-  frame_desc.channels = 2;
+  frame_desc.channels = 1U << 31;
   TetcastFrame *frame = NULL;
   assert_int_equal(tetcast_frame_create(fixture.context, &frame_desc, &frame), TETCAST_ERROR_ARGUMENT);
   tetcast_scene_destroy(&scene);

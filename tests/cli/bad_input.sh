@@ -18,9 +18,7 @@ vtu triangles.vtu '0 1 2;4 5 6' 5
 vtu none.vtu '' 10
 vtu range.vtu '0 1 3 4;1 2 3 8' 10
 vtu negative.vtu '0 1 3 4;1 2 3 -1' 10
-vtu nan.vtu "$five_tetrahedra" 10 '0 0 0  1 0 0  1 1 0  0 1 0  0 0 1  1 0 nan  1 1 1  0 1 1'
-vtu infinite.vtu "$five_tetrahedra" 10 '0 0 0  1 0 0  1 1 0  0 1 0  0 0 1  1 0 1e999  1 1 1  0 1 1'
-for file in folder empty text truncated triangles none range negative nan infinite; do
+for file in folder empty text truncated triangles none range negative; do
   render "$file.vtu" render "$file.vtu"
   refuse 1 "$file.vtu" info "$file.vtu"
 done

@@ -59,6 +59,7 @@ contains '"step": 1,'
 refuse 1 'has no time step 2; there are steps 0 to 1' info two.pvd --time 2
 refuse 1 'has no time 1; the nearest is 0.5, of step 0' info two.pvd --time t=1
 refuse 2 'time' info two.pvd --time soon
+refuse 2 'expected a step' info two.pvd --time all
 cat >two.vtm <<'END'
 <VTKFile type="vtkMultiBlockDataSet" version="1.0"><vtkMultiBlockDataSet>
 <Block name="body"><DataSet name="small" file="cube.vtu"/><DataSet name="large" file="late.vtu"/></Block>

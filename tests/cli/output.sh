@@ -77,6 +77,17 @@ warn 'NaN' render nan.vtu -o nan.png --size 40x30
 scalar='nan nan nan nan nan nan nan 0' vtu empty.vtu "$five_tetrahedra" 10
 warn 'NaN' render empty.vtu -o empty.png --size 40x30
 
+# Cell data, constant in each and averaged.
+accept render cube.vtu -o cells.tif --array 'c d' --size 61x47 --pixel-type double
+accept render cube.vtu -o points.tif --array 'c d' --size 61x47 --pixel-type double --cell-to-point --save-scene points.json
+differ cells.tif points.tif
+accept render --scene points.json -o again.tif
+same points.tif again.tif 'a scene with averages'
+accept render cube.vtu -o same.tif --size 61x47 --pixel-type double --cell-to-point
+same one.tif same.tif 'point data stay'
+accept info cube.vtu --cell-to-point
+contains 'cell +c d +float64 +\[0.5, 3.5\]' # of five tetrahedra, points of one among them
+
 # Statistics.
 accept render cube.vtu -o s.png --size 40x30 --samples 4 --repeat 3 --threads 2 --traversal faces --stats stats.json
 output=$(cat stats.json)

@@ -191,8 +191,29 @@ static void compare(const Picture &picture, const std::vector<double> &pixels, c
   }
 }
 
-// A picture of one tetrahedron with an error channel.
-static TetcastFrame *render_with_error(TetcastType type, int64_t width, int64_t height) {
+// Coefficients of so many groups, each other multiples of the field.
+static void set_groups(TetcastScene *scene, const double values[4], int groups) {
+  std::vector<TetcastField *> fields;
+  for (int g = 0; g < groups; g++) {
+    const double multiples[4] = {values[0] * (g + 1), values[1] * (g + 1), values[2] * (g + 1), values[3] * (g + 1)};
+    TetcastFieldDesc desc = tetcast_field_desc_default();
+    desc.values.data = multiples;
+    desc.values.type = TETCAST_TYPE_FLOAT64;
+    desc.values.count = 4;
+    TetcastField *field = nullptr;
+    assert_int_equal(tetcast_field_create(context, &desc, &field), TETCAST_OK);
+    fields.push_back(field);
+  }
+  TetcastCoefficientsDesc desc = tetcast_coefficients_desc_default();
+  desc.extinction = desc.emission = fields.data();
+  desc.extinction_count = desc.emission_count = groups;
+  assert_int_equal(tetcast_scene_set_coefficients(scene, &desc), TETCAST_OK);
+  for (TetcastField *field : fields)
+    tetcast_field_destroy(&field);
+}
+
+// A picture of one tetrahedron with an error channel, or of so many groups with all channels of theirs.
+static TetcastFrame *render_channels(TetcastType type, int64_t width, int64_t height, int groups) {
   static const double vertices[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, values[4] = {0, 1, 2, 3};
   static const int32_t cell[4] = {0, 1, 2, 3};
   static const double color[4] = {0, 1, 0.5, 0.25}, extinction[2][2] = {{0, 0}, {3, 2}};
@@ -216,7 +237,10 @@ static TetcastFrame *render_with_error(TetcastType type, int64_t width, int64_t 
   frame_desc.width = width;
   frame_desc.height = height;
   frame_desc.type = type;
-  frame_desc.channels = TETCAST_CHANNEL_ERROR;
+  frame_desc.channels = groups == 0 ? unsigned(TETCAST_CHANNEL_ERROR)
+                                    : unsigned(TETCAST_CHANNEL_RADIANCE | TETCAST_CHANNEL_OPTICAL_DEPTH |
+                                               TETCAST_CHANNEL_TRANSMITTANCE | TETCAST_CHANNEL_PATH_LENGTH);
+  frame_desc.groups = std::max(groups, 1);
   TetcastRenderDesc desc = tetcast_render_desc_default();
   desc.tolerance = 1e-3;
   TetcastMesh *mesh = nullptr;
@@ -232,6 +256,8 @@ static TetcastFrame *render_with_error(TetcastType type, int64_t width, int64_t 
   assert_int_equal(tetcast_transfer_function_create(context, &transfer_desc, &transfer), TETCAST_OK);
   assert_int_equal(tetcast_scene_create(context, volume, &scene), TETCAST_OK);
   assert_int_equal(tetcast_scene_set_transfer_function(scene, transfer), TETCAST_OK);
+  if (groups > 0)
+    set_groups(scene, values, groups);
   assert_int_equal(tetcast_frame_create(context, &frame_desc, &frame), TETCAST_OK);
   const double bounds[6] = {0, 1, 0, 1, 0, 1};
   const TetcastCamera camera = tetcast_camera_default(bounds, double(width) / double(height));
@@ -256,7 +282,7 @@ static void the_error_is_a_fifth_channel(void **) {
                {"c.tif", TETCAST_PIXEL_HALF, TypeDesc::UNKNOWN},  {"c.png", TETCAST_PIXEL_DEFAULT, TypeDesc::UNKNOWN},
                {"d.tif", TETCAST_PIXEL_UINT8, TypeDesc::UNKNOWN}, {"c.hdr", TETCAST_PIXEL_DEFAULT, TypeDesc::UNKNOWN}};
   for (const TetcastType type : {TETCAST_TYPE_FLOAT32, TETCAST_TYPE_FLOAT64}) {
-    TetcastFrame *frame = render_with_error(type, width, height);
+    TetcastFrame *frame = render_channels(type, width, height, 0);
     const void *error = tetcast_frame_channel(frame, TETCAST_CHANNEL_ERROR);
     for (const auto &item : cases) {
       const fs::path path = folder / item.name;
@@ -287,6 +313,76 @@ static void the_error_is_a_fifth_channel(void **) {
     }
     tetcast_frame_destroy(&frame);
   }
+  clear_folder();
+}
+
+static double at(const TetcastFrame *frame, const void *values, size_t i) {
+  return tetcast_frame_type(frame) == TETCAST_TYPE_FLOAT64 ? static_cast<const double *>(values)[i]
+                                                           : double(static_cast<const float *>(values)[i]);
+}
+
+// Radiance, optical depth and transmittance of each group, then the path's length, behind colour and alpha or without them.
+static void groups_are_channels(void **) {
+  clear_folder();
+  const int64_t width = 19, height = 83;
+  const struct {
+    const char *name;
+    TetcastType type;
+    int groups;
+    bool only;
+  } cases[] = {{"a.exr", TETCAST_TYPE_FLOAT32, 1, false}, {"b.exr", TETCAST_TYPE_FLOAT32, 12, false},
+               {"c.exr", TETCAST_TYPE_FLOAT32, 12, true}, {"d.tif", TETCAST_TYPE_FLOAT64, 3, true},
+               {"e.tif", TETCAST_TYPE_FLOAT32, 2, false}, {"f.exr", TETCAST_TYPE_FLOAT64, 1, true}};
+  const TetcastChannel kinds[] = {TETCAST_CHANNEL_RADIANCE, TETCAST_CHANNEL_OPTICAL_DEPTH, TETCAST_CHANNEL_TRANSMITTANCE};
+  const char *const names[] = {"radiance", "optical_depth", "transmittance"};
+  for (const auto &item : cases) {
+    TetcastFrame *frame = render_channels(item.type, width, height, item.groups);
+    const fs::path path = folder / item.name;
+    TetcastImageDesc desc = tetcast_image_desc_default();
+    desc.channels_only = item.only;
+    if (path.extension() == ".tif" && item.type == TETCAST_TYPE_FLOAT64)
+      desc.pixel_type = TETCAST_PIXEL_DOUBLE;
+    assert_int_equal(tetcast_image_write(context, path.c_str(), frame, &desc), TETCAST_OK);
+    const Picture picture = read_back(path);
+    const int first = item.only ? 0 : 4, channels = picture.spec.nchannels;
+    assert_int_equal(channels, first + 3 * item.groups + 1);
+    // EXR keeps channels by name, TIFF by place.
+    const auto place = [&](const std::string &name, int number) {
+      if (path.extension() == ".tif")
+        return first + number;
+      const auto &list = picture.spec.channelnames;
+      const auto found = std::find(list.begin(), list.end(), name);
+      if (found == list.end())
+        fail_msg("%s: no channel %s", path.c_str(), name.c_str());
+      return int(found - list.begin());
+    };
+    double largest = 0;
+    for (int kind = 0; kind < 3; kind++) {
+      for (int g = 0; g < item.groups; g++) {
+        char name[64];
+        std::snprintf(name, sizeof name, item.groups == 1 ? "%s" : item.groups > 10 ? "%s.%02d" : "%s.%d", names[kind], g);
+        const int channel = place(name, kind * item.groups + g);
+        assert_true(picture.spec.channelformat(channel).basetype == (desc.pixel_type ? TypeDesc::DOUBLE : TypeDesc::FLOAT));
+        for (size_t i = 0; i < size_t(width * height); i++) {
+          const double value = at(frame, tetcast_frame_channel(frame, kinds[kind]), i * size_t(item.groups) + size_t(g));
+          assert_true(picture.values[i * size_t(channels) + size_t(channel)] == (desc.pixel_type ? value : double(float(value))));
+          if (kind == 0)
+            largest = std::max(largest, value);
+        }
+      }
+    }
+    assert_true(largest > 0);
+    const int last = place("path_length", 3 * item.groups);
+    for (size_t i = 0; i < size_t(width * height); i++) {
+      const double value = at(frame, tetcast_frame_channel(frame, TETCAST_CHANNEL_PATH_LENGTH), i);
+      assert_true(picture.values[i * size_t(channels) + size_t(last)] == (desc.pixel_type ? value : double(float(value))));
+    }
+    tetcast_frame_destroy(&frame);
+  }
+  TetcastFrame *frame = render_channels(TETCAST_TYPE_FLOAT32, 4, 4, 2);
+  assert_int_equal(tetcast_image_write(context, (folder / "a.png").c_str(), frame, nullptr), TETCAST_ERROR_ARGUMENT);
+  assert_non_null(std::strstr(last_error.c_str(), "the channel radiance"));
+  tetcast_frame_destroy(&frame);
   clear_folder();
 }
 
@@ -572,7 +668,7 @@ static void full_disk_leaves_the_old_file_and_no_word_on_stderr(void **) {
 
 int main() {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(formats_hold_what_they_should), cmocka_unit_test(the_error_is_a_fifth_channel),
+      cmocka_unit_test(formats_hold_what_they_should), cmocka_unit_test(the_error_is_a_fifth_channel), cmocka_unit_test(groups_are_channels),
       cmocka_unit_test(jpeg_is_near_a_smooth_picture),
       cmocka_unit_test(doubles_come_back_bit_for_bit),
       cmocka_unit_test(tiff_states_how_alpha_is_meant),

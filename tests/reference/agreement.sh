@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # agreement.sh TETCAST REFERENCE MESH [ARRAY [CASE…]]: renders MESH with the walk (one thread and two), with all faces,
 # and by brute force; the first two must be the same to the last bit and the others within 1e-12.
-# A case is VIEW-TRANSFER. TETCAST_TEST_LONG=1: every view with every transfer function, every pixel. Among so many
-# there are rays that graze an opaque step so flatly that the last bits of a coordinate matter: they may differ by that.
+# A case is VIEW-TRANSFER; VIEW-direct is by --extinction and --emission of an ARRAY ≥ 0.
+# TETCAST_TEST_LONG=1: every view with every transfer function, every pixel. Among so many there are rays that graze an
+# opaque step so flatly that the last bits of a coordinate matter: they may differ by that.
 set -u -o pipefail
 tetcast=$1 reference=$2 mesh=$3 array=${4-}
 shift $(($# < 4 ? $# : 4))
@@ -76,6 +77,11 @@ cat >opacity.json <<END
  "opacity": [[$(at 0), 0.05], [$(at 0.4), 0.02], [$(at 0.7), 0.6], [$(at 1), 1]], "unit_distance": $(number "$size/5")}
 END
 
+# White, of an extinction that is the array itself: what the array as both extinction and emission must look like.
+cat >direct.json <<END
+{"color": [[$low, 1, 1, 1]], "extinction": [[$low, $low], [$high, $high]]}
+END
+
 options_of() { # CASE
   case ${1%-*} in
     default) ;;
@@ -106,6 +112,11 @@ check() { # CASE
   read -r -d '' -a options <<<"--size 96x72 $(options_of "$1")"
   local render=("${base[@]}" "${options[@]}" --pixel-type double)
   run "${render[@]}" --traversal shell --threads 1 -o one.tif --save-scene scene.json || return
+  if [ "${1#*-}" = direct ]; then
+    read -r -d '' -a options <<<"--size 96x72 $(options_of "${1%-*}-preset")"
+    render=("$tetcast" render "$mesh" --quiet "${options[@]}" --extinction "$array" --emission "$array" --pixel-type double)
+    run "${render[@]}" --traversal shell --threads 1 -o one.tif || return
+  fi
   run "${render[@]}" --traversal shell --threads 2 -o two.tif || return
   run "${render[@]}" --traversal faces --threads 2 -o faces.tif || return
   cmp one.tif two.tif || { echo "FAILED: $1: one thread and two" && failures=$((failures + 1)); }

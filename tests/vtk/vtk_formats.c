@@ -85,6 +85,22 @@ static void test_blocks(void **state) {
   for (size_t i = 0; i < 5; ++i) refuse_with(fixture, path, of_block(wrong[i]), "there are: body/lower, body/upper");
   sample_layers(in_folder(fixture, "one.vtu"), 0, 4, GHOST_NONE);
   refuse_with(fixture, fixture->path, of_block("body"), "it is not of blocks");
+  /* What is not asked for is not read: a file cut short does not matter, unless it may hold blocks of its own. */
+  sample_layers(in_folder(fixture, "good.vtu"), 0, 4, GHOST_NONE);
+  text_file(fixture, "cut.vtu", "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOf");
+  text_file(fixture, "cut.vtm", "<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet><Blo");
+  static const char list[] = "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet><DataSet name=\"a\" file=\"good.vtu\"/>"
+                             "<DataSet name=\"b\" file=\"cut.%s\"/></vtkMultiBlockDataSet></VTKFile>";
+  for (int i = 0; i < 2; ++i) {
+    char text[512];
+    snprintf(text, sizeof text, list, i ? "vtm" : "vtu");
+    path = text_file(fixture, "two.vtm", text);
+    const TetcastDatasetDesc desc = of_block("a");
+    assert_int_equal(tetcast_dataset_read(fixture->context, path, &desc, &dataset), i ? TETCAST_ERROR_DATA : TETCAST_OK);
+    if (i == 0) assert_string_equal(tetcast_dataset_block(dataset, 1), "b");
+    tetcast_dataset_destroy(&dataset);
+    read_bad(fixture, path, TETCAST_ERROR_DATA, "truncated");
+  }
   char folder[600]; /* what the writer made beside */
   snprintf(folder, sizeof folder, "rm -rf '%s/box'", fixture->folder);
   assert_int_equal(system(folder), 0);

@@ -196,6 +196,178 @@ static void test_values(void **state) {
   tetcast_dataset_destroy(&dataset);
 }
 
+/* Points whose coordinates are not finite go with the cells that use them, also where ghosts go and points are merged. */
+static void test_nonfinite(void **state) {
+  Fixture *fixture = *state;
+  text_file(fixture, "left.vtu", VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "1 2 3 4")), LEFT)));
+  text_file(fixture, "bad.vtu",
+            VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "2 3 4 9")) OF_CELLS(VALUES("Float32", "b", "8")), "1 0 0 0 1 0 0 0 1 1 nan 1")));
+  text_file(fixture, "right.vtu", VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "2 3 4 5")) OF_CELLS(VALUES("Float32", "b", "7")), RIGHT)));
+  const char *path = text_file(fixture, "all.pvtu", PVTU(SOURCE("left.vtu") SOURCE("bad.vtu") SOURCE("right.vtu")));
+  TetcastDataset *dataset = read_with(fixture, path, tetcast_dataset_desc_default());
+  assert_int_equal(fixture->warnings, 2); /* of the coordinate, and of b */
+  const TetcastDatasetPieces pieces = tetcast_dataset_pieces(dataset);
+  assert_int_equal(pieces.nonfinite_points, 1);
+  assert_int_equal(pieces.nonfinite_cells, 1);
+  assert_int_equal(pieces.merged_points, 6);
+  assert_int_equal(pieces.ghost_cells, 0);
+  assert_int_equal(tetcast_dataset_point_count(dataset), 12);
+  assert_int_equal(tetcast_dataset_cell_count(dataset), 3);
+  assert_int_equal(health_of(fixture, dataset).boundary_faces, 6);
+  assert_int_equal(health_of(fixture, dataset).unused_vertices, 0);
+  assert_true(value_at(dataset, "a", 1, 1, 1) == 5);
+  TetcastField *field;
+  assert_int_equal(tetcast_dataset_field(dataset, "b", &field, NULL), TETCAST_OK);
+  assert_true(isnan(tetcast_field_value(field, 0)) && tetcast_field_value(field, 1) == 7);
+  tetcast_field_destroy(&field);
+  tetcast_dataset_destroy(&dataset);
+
+  text_file(fixture, "ghost.vtu", VTU(PIECE(OF_CELLS(VALUES("UInt8", "vtkGhostType", "1")), "1 0 0 0 1 0 0 0 1 inf 1 1")));
+  path = text_file(fixture, "all.pvtu", PVTU(SOURCE("left.vtu") SOURCE("ghost.vtu")));
+  dataset = read_with(fixture, path, tetcast_dataset_desc_default());
+  assert_int_equal(tetcast_dataset_pieces(dataset).ghost_cells, 1);
+  assert_int_equal(tetcast_dataset_pieces(dataset).nonfinite_points, 0);
+  assert_int_equal(tetcast_dataset_point_count(dataset), 8);
+  tetcast_dataset_destroy(&dataset);
+  read_bad(fixture, text_file(fixture, "b.pvtu", PVTU(SOURCE("bad.vtu") SOURCE("bad.vtu"))), TETCAST_ERROR_DATA,
+           "no cells without coordinates that are NaN or infinite");
+}
+
+/* The mean of the neighbours' numbers along one axis of the box: cells `at − 1` and `at`, of `count`. */
+static double mean_number(double at, int count) { return at == 0 ? 0 : at == count ? count - 1 : at - 0.5; }
+
+/* Cell arrays averaged to points are those of the whole for pieces, too; cells without a value don't count. */
+static void test_cell_to_point(void **state) {
+  Fixture *fixture = *state;
+  TetcastDatasetDesc desc = tetcast_dataset_desc_default();
+  desc.cell_to_point = true;
+  for (int ghosts = -1; ghosts <= GHOST_LEVELS; ++ghosts) {
+    const char *path = in_folder(fixture, "a.vtu");
+    sample_layers(path, 0, ghosts < 0 ? 4 : 2, ghosts < 0 ? GHOST_NONE : (SampleGhosts)ghosts);
+    if (ghosts >= 0) {
+      sample_layers(in_folder(fixture, "b.vtu"), 2, 4, (SampleGhosts)ghosts);
+      path = text_file(fixture, "all.pvtu", PVTU(SOURCE("a.vtu") SOURCE("b.vtu")));
+    }
+    TetcastDataset *dataset = read_with(fixture, path, desc);
+    TetcastMesh *mesh = mesh_of(dataset);
+    TetcastField *c, *s;
+    const char *name;
+    assert_int_equal(tetcast_dataset_field(dataset, "c", &c, &name), TETCAST_OK);
+    assert_string_equal(name, "c");
+    assert_int_equal(tetcast_dataset_field(dataset, "s", &s, NULL), TETCAST_OK); /* of points: as it is */
+    assert_int_equal(tetcast_field_association(c), TETCAST_POINT);
+    assert_int_equal(tetcast_field_values(c).count, BOX_POINTS);
+    for (int64_t i = 0; i < BOX_POINTS; ++i) {
+      double p[3];
+      tetcast_mesh_vertex(mesh, i, p);
+      const double expected = mean_number(p[0], 3) + 3 * mean_number(p[1], 2) + 6 * mean_number(2 * p[2], 4);
+      assert_true(fabs(tetcast_field_value(c, i) - expected) < 1e-13 * 24);
+      assert_true(tetcast_field_value(s, i) == p[0] + 2 * p[1] + 4 * p[2]);
+    }
+    tetcast_field_destroy(&c);
+    tetcast_field_destroy(&s);
+    tetcast_mesh_destroy(&mesh);
+    tetcast_dataset_destroy(&dataset);
+  }
+
+  /* Three cells at a triangle: a number, NaN, and a surface, which is no cell of the mesh; vectors by components, then their length. */
+  const char *path = text_file(
+      fixture, "three.vtu",
+      VTU("<Piece NumberOfPoints=\"6\" NumberOfCells=\"3\">" OF_CELLS(
+          VALUES("Float64", "c", "4 nan 100") "<DataArray type=\"Float64\" Name=\"v\" NumberOfComponents=\"2\" format=\"ascii\">"
+                                              "3 4 -3 4 9 9</DataArray>") "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
+          "format=\"ascii\">" LEFT " 1 1 1 5 5 5</DataArray></Points><Cells>" VALUES("Int32", "connectivity", "0 1 2 3 1 2 3 4 1 2 5")
+              VALUES("Int32", "offsets", "4 8 11") VALUES("UInt8", "types", "10 10 5") "</Cells></Piece>"));
+  TetcastDataset *dataset = read_with(fixture, path, desc);
+  static const struct {
+    const char *selector;
+    double values[5];
+  } cases[] = {{"c", {4, 4, 4, 4, NAN}}, {"v:0", {3, 0, 0, 0, -3}}, {"v", {5, 4, 4, 4, 5}}};
+  for (int i = 0; i < 3; ++i) {
+    TetcastField *field;
+    assert_int_equal(tetcast_dataset_field(dataset, cases[i].selector, &field, NULL), TETCAST_OK);
+    int64_t nonfinite;
+    tetcast_field_range(field, NULL, &nonfinite);
+    assert_int_equal(nonfinite, i == 0); /* and not the point that only the surface has */
+    for (int k = 0; k < 5; ++k) {
+      const double value = tetcast_field_value(field, k), expected = cases[i].values[k];
+      assert_true(value == expected || (isnan(value) && isnan(expected)));
+    }
+    tetcast_field_destroy(&field);
+  }
+  tetcast_dataset_destroy(&dataset);
+}
+
+/* A cell that has a point twice counts once there. */
+static void test_cell_to_point_twice(void **state) {
+  Fixture *fixture = *state;
+  TetcastDatasetDesc desc = tetcast_dataset_desc_default();
+  desc.cell_to_point = true;
+  const char *path = text_file(fixture, "twice.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n" LEFT
+                               "\nCELLS 2 10\n4 0 1 2 3\n4 1 1 2 3\nCELL_TYPES 2\n10\n10\nCELL_DATA 2\nSCALARS c float\n"
+                               "LOOKUP_TABLE default\n4 10\n");
+  TetcastDataset *dataset = read_with(fixture, path, desc);
+  assert_true(value_at(dataset, "c", 0, 0, 0) == 4 && value_at(dataset, "c", 1, 0, 0) == 7 && value_at(dataset, "c", 0, 1, 0) == 7);
+  tetcast_dataset_destroy(&dataset);
+}
+
+/* Each piece of a .vtu has arrays of its own, in an order of its own. */
+static void test_arrays_of_pieces(void **state) {
+  Fixture *fixture = *state;
+  const char *path = text_file(
+      fixture, "pieces.vtu",
+      VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "1 2 3 4") VALUES("Float64", "b", "5 6 7 8")) OF_CELLS(VALUES("Float32", "c", "1")), LEFT)
+              PIECE(OF_POINTS(VALUES("Float32", "d", "1 1 1 9") VALUES("Float64", "b", "6 7 8 10") VALUES("Float64", "a", "2 3 4 11"))
+                        OF_CELLS(VALUES("Int8", "e", "2") VALUES("Float32", "c", "3")), RIGHT)
+                  PIECE("", "1 0 0 0 1 0 1 1 1 3 0 0")));
+  TetcastDataset *dataset = read_with(fixture, path, tetcast_dataset_desc_default());
+  assert_int_equal(fixture->warnings, 1); /* five arrays are missing somewhere */
+  assert_int_equal(tetcast_dataset_pieces(dataset).pieces, 3);
+  static const char *const names[] = {"a", "b", "d", "c", "e"};
+  TetcastDatasetArray array;
+  for (int i = 0; i < 5; ++i) {
+    assert_true(tetcast_dataset_array(dataset, i, &array));
+    assert_string_equal(array.name, names[i]);
+    assert_int_equal(array.association, i < 3 ? TETCAST_POINT : TETCAST_CELL);
+  }
+  assert_false(tetcast_dataset_array(dataset, 5, &array));
+  assert_true(value_at(dataset, "a", 0, 0, 0) == 1 && value_at(dataset, "a", 1, 1, 1) == 11 && isnan(value_at(dataset, "a", 3, 0, 0)));
+  assert_true(value_at(dataset, "b", 0, 0, 0) == 5 && value_at(dataset, "b", 1, 1, 1) == 10);
+  assert_true(value_at(dataset, "d", 1, 1, 1) == 9 && isnan(value_at(dataset, "d", 0, 0, 0)));
+  TetcastField *field;
+  for (int i = 3; i < 5; ++i) {
+    assert_int_equal(tetcast_dataset_field(dataset, names[i], &field, NULL), TETCAST_OK);
+    const double left = tetcast_field_value(field, 0), right = tetcast_field_value(field, 1);
+    assert_true(i == 3 ? left == 1 && right == 3 : isnan(left) && right == 2);
+    assert_true(isnan(tetcast_field_value(field, 2)));
+    tetcast_field_destroy(&field);
+  }
+  tetcast_dataset_destroy(&dataset);
+
+  /* Of all these one alone, and one that is not there. */
+  static const char *const selectors[] = {"b", "b:0", "e", "c:mag", "bb", "zz"}, *const found[] = {"b", "b", "e", "c", NULL, NULL};
+  for (int i = 0; i < 6; ++i) {
+    TetcastDatasetDesc desc = tetcast_dataset_desc_default();
+    desc.only = selectors[i];
+    dataset = read_with(fixture, path, desc);
+    assert_true(tetcast_dataset_array(dataset, 0, &array) == (found[i] != NULL));
+    if (found[i]) assert_string_equal(array.name, found[i]);
+    assert_false(tetcast_dataset_array(dataset, 1, &array));
+    assert_int_equal(tetcast_dataset_field(dataset, selectors[i], &field, NULL), found[i] ? TETCAST_OK : TETCAST_ERROR_ARGUMENT);
+    if (!found[i]) assert_complaint(fixture, path, "has no array");
+    tetcast_field_destroy(&field);
+    tetcast_dataset_destroy(&dataset);
+  }
+  for (int ghosts = GHOST_TYPES; ghosts <= GHOST_LEVELS; ++ghosts) { /* which are seen at any rate */
+    sample_layers(in_folder(fixture, "ghosts.vtu"), 1, 3, (SampleGhosts)ghosts);
+    TetcastDatasetDesc desc = tetcast_dataset_desc_default();
+    desc.only = "s";
+    dataset = read_with(fixture, fixture->path, desc);
+    assert_layers(fixture, dataset, 1, 3, 1, false);
+    tetcast_dataset_destroy(&dataset);
+  }
+}
+
 /* Parts of a machine that had no work, files of nothing but ghosts, and lists that lead nowhere. */
 static void test_odd_lists(void **state) {
   Fixture *fixture = *state;
@@ -255,6 +427,6 @@ static void test_others_pieces(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {TEST(test_layers), TEST(test_blanked), TEST(test_tolerance), TEST(test_cracks),
-                                     TEST(test_values), TEST(test_odd_lists), TEST(test_others_pieces)};
+                                     TEST(test_values), TEST(test_nonfinite), TEST(test_cell_to_point), TEST(test_cell_to_point_twice), TEST(test_arrays_of_pieces), TEST(test_odd_lists), TEST(test_others_pieces)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,13 +24,47 @@ namespace {
 constexpr uint32_t desc_cookie = 0x7463696d; // "tcim"
 constexpr int64_t batch_rows = 64; // handed to OpenImageIO at a time: a multiple of what EXR and TIFF compress together
 
+// What is stored beside colour and alpha, or instead.
+struct Extra {
+  const char *name;
+  const void *data; // [height][width][count]
+  int count;
+};
+
 // The frame's pixels, or the one pixel of a check.
 struct Pixels {
   const void *data;
   int64_t width, height, row_stride;
   bool is_double;
-  const void *error; // [height][width], or null
+  std::vector<Extra> extras;
+  bool extras_only;
+
+  int colors() const { return extras_only ? 0 : 4; }
+  int channels() const {
+    int count = colors();
+    for (const Extra &extra : extras)
+      count += extra.count;
+    return count;
+  }
 };
+
+constexpr struct {
+  TetcastChannel channel;
+  const char *name;
+  bool of_groups;
+} channel_table[] = {{TETCAST_CHANNEL_RADIANCE, "radiance", true},
+                     {TETCAST_CHANNEL_OPTICAL_DEPTH, "optical_depth", true},
+                     {TETCAST_CHANNEL_TRANSMITTANCE, "transmittance", true},
+                     {TETCAST_CHANNEL_PATH_LENGTH, "path_length", false},
+                     {TETCAST_CHANNEL_ERROR, "error", false}};
+
+std::vector<Extra> extras_of(const TetcastFrame *frame) {
+  std::vector<Extra> extras;
+  for (const auto &entry : channel_table)
+    if (const void *data = tetcast_frame_channel(frame, entry.channel))
+      extras.push_back({entry.name, data, entry.of_groups ? tetcast_frame_groups(frame) : 1});
+  return extras;
+}
 
 // One error, already sent to the context.
 struct Failure {
@@ -162,15 +196,19 @@ void integer_rows(const Pixels &pixels, int64_t begin, int64_t end, int channels
   }
 }
 
-// Rows [begin, end) with the error as a fifth channel.
-void five_channel_rows(const Pixels &pixels, int64_t begin, int64_t end, unsigned char *out) {
-  const size_t size = pixels.is_double ? 8 : 4;
+// Rows [begin, end) with all channels of a pixel next to each other.
+void many_channel_rows(const Pixels &pixels, int64_t begin, int64_t end, unsigned char *out) {
+  const size_t size = pixels.is_double ? 8 : 4, colors = size_t(pixels.colors()) * size;
   for (int64_t y = begin; y < end; y++) {
     const char *row = static_cast<const char *>(pixels.data) + y * pixels.row_stride;
-    const char *error = static_cast<const char *>(pixels.error) + size_t(y * pixels.width) * size;
-    for (size_t x = 0; x < size_t(pixels.width); x++, out += 5 * size) {
-      std::memcpy(out, row + x * 4 * size, 4 * size);
-      std::memcpy(out + 4 * size, error + x * size, size);
+    for (size_t x = 0; x < size_t(pixels.width); x++) {
+      std::memcpy(out, row + x * 4 * size, colors);
+      out += colors;
+      for (const Extra &extra : pixels.extras) {
+        const size_t bytes = size_t(extra.count) * size;
+        std::memcpy(out, static_cast<const char *>(extra.data) + (size_t(y * pixels.width) + x) * bytes, bytes);
+        out += bytes;
+      }
     }
   }
 }
@@ -180,13 +218,14 @@ bool write_rows(ImageOutput &output, const Pixels &pixels, const double backgrou
   const bool floating = is_float(spec.format);
   const TypeDesc frame_type = pixels.is_double ? TypeDesc::DOUBLE : TypeDesc::FLOAT;
   std::vector<unsigned char> batch;
-  const size_t pixel_bytes = pixels.error ? 5 * frame_type.size() : floating ? 0 : spec.pixel_bytes();
+  const bool many = !pixels.extras.empty();
+  const size_t pixel_bytes = many ? size_t(pixels.channels()) * frame_type.size() : floating ? 0 : spec.pixel_bytes();
   batch.resize(size_t(pixels.width) * size_t(std::min(batch_rows, pixels.height)) * pixel_bytes);
   for (int64_t begin = 0; begin < pixels.height; begin += batch_rows) {
     const int64_t end = std::min(begin + batch_rows, pixels.height);
     bool done;
-    if (pixels.error) {
-      five_channel_rows(pixels, begin, end, batch.data());
+    if (many) {
+      many_channel_rows(pixels, begin, end, batch.data());
       done = output.write_scanlines(int(begin), int(end), 0, frame_type, batch.data());
     } else if (floating) {
       const char *row = static_cast<const char *>(pixels.data) + begin * pixels.row_stride;
@@ -205,19 +244,35 @@ bool write_rows(ImageOutput &output, const Pixels &pixels, const double backgrou
   return true;
 }
 
+// "radiance", or of several groups "radiance.00", "radiance.01" …, so that names sort as groups do.
+std::string channel_name(const Extra &extra, int group) {
+  if (extra.count == 1)
+    return extra.name;
+  const std::string number = std::to_string(group), last = std::to_string(extra.count - 1);
+  return extra.name + ("." + std::string(last.size() - number.size(), '0')) + number;
+}
+
+void name_channels(const Pixels &pixels, TypeDesc type, ImageSpec &spec) {
+  spec.nchannels = pixels.colors();
+  spec.default_channel_names(); // R, G, B, A
+  if (pixels.extras_only)
+    spec.alpha_channel = -1;
+  for (const Extra &extra : pixels.extras)
+    for (int group = 0; group < extra.count; group++)
+      spec.channelnames.push_back(channel_name(extra, group));
+  spec.nchannels = pixels.channels();
+  if (type == TypeDesc::HALF) { // which would make 0 of small bounds
+    spec.channelformats.assign(size_t(pixels.colors()), type);
+    spec.channelformats.resize(size_t(pixels.channels()), TypeDesc::FLOAT);
+  }
+}
+
 ImageSpec picture_spec(const ImageOutput &output, const Pixels &pixels, TypeDesc type, bool opaque) {
   const bool alpha = output.supports("alpha") && (is_float(type) || !opaque);
   ImageSpec spec(int(pixels.width), int(pixels.height), alpha ? 4 : 3, type);
   spec.attribute("Software", "tetcast " TETCAST_VERSION_STRING);
-  if (pixels.error) {
-    spec.nchannels = 5;
-    spec.default_channel_names(); // R, G, B, A and one more
-    spec.channelnames[4] = "error";
-    if (type == TypeDesc::HALF) { // which would make 0 of small bounds
-      spec.channelformats.assign(5, type);
-      spec.channelformats[4] = TypeDesc::FLOAT;
-    }
-  }
+  if (!pixels.extras.empty())
+    name_channels(pixels, type, spec);
   if (alpha && !is_float(type))
     spec.attribute("oiio:UnassociatedAlpha", 1);
   const std::string format = output.format_name();
@@ -249,12 +304,16 @@ void write_picture(TetcastContext *context, const char *path, const Pixels &pixe
   if (const int error = file.open(path))
     fail(context, TETCAST_ERROR_IO, path, error_text(error));
   proxy = std::make_unique<tetcast::CheckedProxy>(file.file(), file.temporary());
-  const TypeDesc type = requested_type(desc.pixel_type, format);
-  if (pixels.error && (!is_float(type) || !output->supports("nchannels")))
+  TypeDesc type = requested_type(desc.pixel_type, format);
+  if (pixels.extras_only && type == TypeDesc::HALF && output->supports("channelformats"))
+    type = TypeDesc::FLOAT; // as each of them is
+  if (!pixels.extras.empty() && (!is_float(type) || !output->supports("nchannels")))
     fail(context, TETCAST_ERROR_ARGUMENT, path,
-         "the frame has an error channel, which only floating-point pixels in .exr and .tif can hold");
-  if (pixels.error && type == TypeDesc::HALF && !output->supports("channelformats"))
-    fail(context, TETCAST_ERROR_ARGUMENT, path, "the error channel does not fit into pixels of type half in this format");
+         std::string("the frame has the channel ") + pixels.extras[0].name +
+           ", which only floating-point pixels in .exr and .tif can hold");
+  if (!pixels.extras.empty() && type == TypeDesc::HALF && !output->supports("channelformats"))
+    fail(context, TETCAST_ERROR_ARGUMENT, path,
+         std::string("the channel ") + pixels.extras[0].name + " does not fit into pixels of type half in this format");
   const bool opaque = desc.background[3] >= 1;
   ImageSpec spec = picture_spec(*output, pixels, type, opaque);
   void *pointer = static_cast<OIIO::Filesystem::IOProxy *>(proxy.get());
@@ -297,6 +356,8 @@ TetcastStatus guarded(TetcastContext *context, const char *path, const Pixels &p
   std::memcpy(&pixel_type, &desc.pixel_type, sizeof pixel_type);
   if (pixel_type < TETCAST_PIXEL_DEFAULT || pixel_type > TETCAST_PIXEL_DOUBLE)
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "unknown pixel type %d", pixel_type);
+  if (desc.channels_only && pixels.extras.empty() && publish)
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "an image of a frame's channels only, but it has none");
   for (double value : desc.background)
     if (!(value >= 0 && value <= 1))
       return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "background component %g is outside [0, 1]", value);
@@ -332,7 +393,7 @@ TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, con
                                  "tetcast_image_write: context, path and frame are needed");
   const Pixels pixels = {tetcast_frame_pixels(frame), tetcast_frame_width(frame), tetcast_frame_height(frame),
                          tetcast_frame_row_stride(frame), tetcast_frame_type(frame) == TETCAST_TYPE_FLOAT64,
-                         tetcast_frame_channel(frame, TETCAST_CHANNEL_ERROR)};
+                         extras_of(frame), desc && desc->channels_only};
   return guarded(context, path, pixels, desc, true);
 }
 
@@ -340,5 +401,5 @@ TetcastStatus tetcast_image_check(TetcastContext *context, const char *path, con
   if (!context || !path)
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "tetcast_image_check: context and path are needed");
   static const float pixel[4] = {0, 0, 0, 0};
-  return guarded(context, path, {pixel, 1, 1, sizeof pixel, false, nullptr}, desc, false);
+  return guarded(context, path, {pixel, 1, 1, sizeof pixel, false, {}, false}, desc, false);
 }

@@ -219,6 +219,11 @@ void add_points(const tcv::Tetrahedra &tetrahedra, vtkDataArray *points) {
 
 namespace tcv {
 
+bool is_volume(int type) {
+  const CellType *found = find_type(type);
+  return found && found->way != IGNORED;
+}
+
 void ContextDeleter::operator()(TetcastContext *context) const { tetcast_context_destroy(&context); }
 void CutDeleter::operator()(TetcastCut *cut) const { tetcast_cut_destroy(&cut); }
 

@@ -34,6 +34,8 @@ struct Tetrahedra {
   TetcastCutInfo info = {};                            // all 0 when nothing was cut
 };
 
+bool is_volume(int type); // whether cells of this type of VTK's become tetrahedra
+
 struct CutOptions {
   int subdivision = 0; // of curved cells, as in TetcastCellsDesc
   int threads = 0;

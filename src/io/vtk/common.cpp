@@ -190,25 +190,30 @@ void refuse(const char *path, const std::string &kind, const char *wanted, const
 
 // ── what VTK hands out ──
 
-template <typename T> static void check_finite(const char *path, const T *values, int64_t count) {
-  for (int64_t i = 0; i < count; ++i) {
-    if (!std::isfinite(values[i])) {
-      fail(TETCAST_ERROR_DATA, "%s: point %lld: coordinate %c is %g", path, static_cast<long long>(i / 3), "xyz"[i % 3],
-           static_cast<double>(values[i]));
-    }
-  }
+template <typename T> static int64_t find_nonfinite(const T *values, int64_t count) {
+  int64_t i = 0;
+  while (i < count && std::isfinite(values[i])) ++i;
+  return i < count ? i : -1;
+}
+
+int64_t first_nonfinite(vtkDataArray *data) {
+  const int64_t count = data->GetNumberOfComponents() * static_cast<int64_t>(data->GetNumberOfTuples());
+  if (auto *floats = vtkAOSDataArrayTemplate<float>::FastDownCast(data)) return find_nonfinite(floats->GetPointer(0), count);
+  if (auto *doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(data)) return find_nonfinite(doubles->GetPointer(0), count);
+  return -1; // integers
+}
+
+void check_dimension(const char *path, vtkPoints *points) {
+  const int components = points->GetData()->GetNumberOfComponents();
+  if (components != 3) fail(TETCAST_ERROR_DATA, "%s: points have %d components, not 3", path, components);
 }
 
 void check_points(const char *path, vtkPoints *points) {
-  vtkDataArray *data = points->GetData();
-  if (data->GetNumberOfComponents() != 3) {
-    fail(TETCAST_ERROR_DATA, "%s: points have %d components, not 3", path, data->GetNumberOfComponents());
-  }
-  const int64_t count = 3 * static_cast<int64_t>(data->GetNumberOfTuples());
-  if (auto *floats = vtkAOSDataArrayTemplate<float>::FastDownCast(data))
-    check_finite(path, floats->GetPointer(0), count);
-  if (auto *doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(data))
-    check_finite(path, doubles->GetPointer(0), count);
+  check_dimension(path, points);
+  const int64_t i = first_nonfinite(points->GetData());
+  if (i < 0) return;
+  fail(TETCAST_ERROR_DATA, "%s: point %lld: coordinate %c is %g", path, static_cast<long long>(i / 3), "xyz"[i % 3],
+       points->GetData()->GetComponent(i / 3, static_cast<int>(i % 3)));
 }
 
 template <typename ArrayType>

@@ -90,7 +90,9 @@ bool has_extension(const char *path, const char *extension); // ".vtu", in any c
 [[noreturn]] void refuse(const char *path, const std::string &kind, const char *wanted, const char *extensions);
 
 // Each fails with the first offence and its place.
-void check_points(const char *path, vtkPoints *points);
+int64_t first_nonfinite(vtkDataArray *data); // value, of all components; -1: there is none
+void check_dimension(const char *path, vtkPoints *points); // three coordinates each
+void check_points(const char *path, vtkPoints *points);    // and finite ones
 void check_cells(const char *path, vtkCellArray *cells, int64_t point_count, const char *what);
 
 TetcastType type_of(const vtkDataArray *array);   // NONE for types TetcastType lacks

@@ -69,20 +69,34 @@ static void warn_of_cut(const TetcastDataset *dataset) {
   }
 }
 
+static void warn_of_nonfinite(const TetcastDataset *dataset) {
+  const TetcastDatasetPieces &pieces = dataset->pieces;
+  if (pieces.nonfinite_points == 0) return;
+  tetcast_context_message(dataset->context, TETCAST_SEVERITY_WARNING,
+                          "%s: %lld points have coordinates that are NaN or infinite: they are left out, and so are %lld cells that use them",
+                          dataset->path.c_str(), static_cast<long long>(pieces.nonfinite_points), static_cast<long long>(pieces.nonfinite_cells));
+}
+
 static void read_dataset(TetcastContext *context, const char *path, const TetcastDatasetDesc &desc, TetcastDataset *dataset) {
   const Reading reading = {context, &desc, path, "", 0};
   Contents contents = read_pieces_of(reading);
   dataset->context = context;
   dataset->path = path;
+  if (desc.only) dataset->only = desc.only;
   dataset->pieces.surfaces = contents.surfaces;
   dataset->blocks = std::move(contents.blocks);
   dataset->times = std::move(contents.times);
   dataset->step = contents.step;
   const Grid grid = unite(reading, &contents.pieces, &dataset->pieces);
   const int64_t points = grid->GetNumberOfPoints(), cells = grid->GetNumberOfCells();
-  if (cells == 0) fail(TETCAST_ERROR_DATA, "%s: holds no cells%s", path, dataset->pieces.ghost_cells > 0 ? " but ghosts" : "");
-  dataset->point_count = points + dataset->pieces.ghost_points + dataset->pieces.merged_points;
-  dataset->cell_count = cells + dataset->pieces.ghost_cells;
+  const TetcastDatasetPieces &pieces = dataset->pieces;
+  if (cells == 0 && pieces.nonfinite_cells > 0) {
+    fail(TETCAST_ERROR_DATA, "%s: holds no cells without coordinates that are NaN or infinite", path);
+  }
+  if (cells == 0) fail(TETCAST_ERROR_DATA, "%s: holds no cells%s", path, pieces.ghost_cells > 0 ? " but ghosts" : "");
+  warn_of_nonfinite(dataset);
+  dataset->point_count = points + pieces.ghost_points + pieces.nonfinite_points + pieces.merged_points;
+  dataset->cell_count = cells + pieces.ghost_cells + pieces.nonfinite_cells;
   take_points(grid, dataset);
   {
     const Capture capture; // cutting may complain as well
@@ -92,6 +106,10 @@ static void read_dataset(TetcastContext *context, const char *path, const Tetcas
     make_tetrahedra(path, grid, dataset->points, options, &dataset->tetrahedra);
   }
   warn_of_cut(dataset);
+  if (desc.cell_to_point) {
+    dataset->corners = grid->GetCells();
+    dataset->types = grid->GetCellTypesArray();
+  }
   take_arrays(path, grid->GetPointData(), TETCAST_POINT, points, &dataset->arrays);
   take_arrays(path, grid->GetCellData(), TETCAST_CELL, cells, &dataset->arrays);
 }

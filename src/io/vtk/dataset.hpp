@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include <vtkCellArray.h>
 #include <vtkDataArray.h>
 #include <vtkSmartPointer.h>
+#include <vtkUnsignedCharArray.h>
 
 #include <tetcast/dataset.h>
 
@@ -38,7 +40,10 @@ struct TetcastDataset {
   int64_t step = 0;
   vtkSmartPointer<vtkDataArray> points; // float32 or float64
   tcv::Tetrahedra tetrahedra;
+  std::string only;                        // arrays that were to be read; empty: all
   std::vector<tcv::Array> arrays;          // point arrays first
+  vtkSmartPointer<vtkCellArray> corners;   // of the file's cells, and
+  vtkSmartPointer<vtkUnsignedCharArray> types; // theirs; null unless cell arrays are to be averaged
   mutable std::mutex mutex;                // guards the next
   mutable std::set<std::string> selectors; // that were handed out
 };

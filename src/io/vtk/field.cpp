@@ -49,6 +49,8 @@ static const Array *default_array(const TetcastDataset *dataset) {
 }
 
 static Selection select(const TetcastDataset *dataset, const char *selector) {
+  if (dataset->arrays.empty() && !dataset->only.empty())
+    fail(TETCAST_ERROR_ARGUMENT, "%s: has no array '%s'", dataset->path.c_str(), dataset->only.c_str());
   if (dataset->arrays.empty())
     fail(TETCAST_ERROR_DATA, "%s: has no arrays over points or cells", dataset->path.c_str());
   Selection selection;
@@ -98,6 +100,44 @@ static std::vector<double> computed(const Selection &selection) {
   return values;
 }
 
+// What the cells that use each point have on average: the selected scalar of a cell array, as one of points. Those that no cell uses get
+// the value of another: they are not drawn, and no value is missing.
+static std::vector<double> averaged(const TetcastDataset *dataset, const Selection &selection) {
+  vtkDataArray *data = selection.array->data;
+  const bool whole = selection.component == MAGNITUDE;
+  const int first = whole ? 0 : selection.component, components = whole ? data->GetNumberOfComponents() : 1;
+  const auto width = static_cast<size_t>(components);
+  const auto points = static_cast<size_t>(dataset->points->GetNumberOfTuples() - dataset->tetrahedra.info.added_vertices);
+  std::vector<double> sums(points * width), tuple(width);
+  std::vector<int32_t> counts(points);
+  std::vector<int64_t> last(points, -1); // the cell that was there last: some have a point twice
+  for (vtkIdType cell = 0; cell < data->GetNumberOfTuples(); ++cell) {
+    if (!is_volume(dataset->types->GetValue(cell))) continue;
+    for (int k = 0; k < components; ++k) tuple[static_cast<size_t>(k)] = data->GetComponent(cell, first + k);
+    const bool finite = std::all_of(tuple.begin(), tuple.end(), [](double value) { return std::isfinite(value); });
+    vtkIdType size;
+    const vtkIdType *corners;
+    dataset->corners->GetCellAtId(cell, size, corners);
+    for (vtkIdType j = 0; j < size; ++j) {
+      const auto point = static_cast<size_t>(corners[j]);
+      if (last[point] == cell) continue;
+      last[point] = cell;
+      if (!finite) continue;
+      ++counts[point];
+      for (size_t k = 0; k < width; ++k) sums[point * width + k] += tuple[k];
+    }
+  }
+  std::vector<double> values(points);
+  double other = 0;
+  for (size_t i = points; i-- > 0;) {
+    for (size_t k = 0; k < width; ++k) tuple[k] = sums[i * width + k] / counts[i]; // NaN where there are none
+    values[i] = whole ? length_of(tuple.data(), components) : tuple[0];
+    if (counts[i] > 0) other = values[i];
+  }
+  for (size_t i = 0; i < points; ++i) values[i] = last[i] < 0 ? other : values[i];
+  return values;
+}
+
 // The value of its cell for each tetrahedron.
 static std::vector<char> gathered(const TetcastArray &values, const TetcastArray &sources) {
   const size_t size = static_cast<size_t>(type_size(values.type));
@@ -131,20 +171,21 @@ static std::vector<char> extended(const TetcastArray &values, const Tetrahedra &
 
 static TetcastStatus make_field(const TetcastDataset *dataset, const Selection &selection, TetcastField **field) {
   TetcastFieldDesc desc = tetcast_field_desc_default();
-  desc.association = selection.array->association;
+  const bool average = selection.array->association == TETCAST_CELL && dataset->corners;
+  desc.association = average ? TETCAST_POINT : selection.array->association;
   desc.ownership = TETCAST_BORROW;
   vtkDataArray *data = selection.array->data;
   std::vector<double> values;
   const bool extend = desc.association == TETCAST_POINT && dataset->tetrahedra.info.added_vertices > 0;
   const TetcastType type = type_of(data);
   const bool real = type == TETCAST_TYPE_FLOAT32 || type == TETCAST_TYPE_FLOAT64;
-  if (type != TETCAST_TYPE_NONE && selection.component != MAGNITUDE && (real || !extend)) {
+  if (!average && type != TETCAST_TYPE_NONE && selection.component != MAGNITUDE && (real || !extend)) {
     desc.values = view_of(data);
     const int64_t size = type_size(desc.values.type);
     desc.values.stride = size * data->GetNumberOfComponents();
     desc.values.data = static_cast<const char *>(desc.values.data) + size * selection.component;
   } else {
-    values = computed(selection);
+    values = average ? averaged(dataset, selection) : computed(selection);
     desc.values.data = values.data();
     desc.values.type = TETCAST_TYPE_FLOAT64;
     desc.values.stride = sizeof(double);

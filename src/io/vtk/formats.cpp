@@ -53,6 +53,12 @@ bool one_of(const char *path, const char *extensions) {
   return false;
 }
 
+// Whether a file of this kind is all of one block: the other kinds may hold blocks within.
+bool is_one_block(const std::string &kind) {
+  const bool xml = kind.compare(0, 8, "VTKFile ") == 0 && kind != "VTKFile vtkMultiBlockDataSet" && kind != "VTKFile Collection";
+  return xml || kind.compare(0, 4, "vtk ") == 0;
+}
+
 bool available(const char *plugin) { return !plugin || tcv::plugin_exists(plugin); }
 
 } // namespace
@@ -74,9 +80,11 @@ void read_contents(const Reading &reading, Contents *contents) {
 void read_part(const Reading &of, const std::string &path, const std::string &block, Contents *contents) {
   if (of.depth >= 8) fail(TETCAST_ERROR_DATA, "%s: is listed by a file that lists a file …, eight times over", path.c_str());
   try {
-    if (is_surface(file_kind(file_head(path.c_str())))) {
+    const std::string kind = file_kind(file_head(path.c_str()));
+    const bool wanted = block_wanted(block, of.desc->block);
+    if (is_surface(kind) || (!block.empty() && !wanted && is_one_block(kind))) {
       list_block(block, contents);
-      contents->surfaces += block_wanted(block, of.desc->block);
+      contents->surfaces += is_surface(kind) && wanted;
       return;
     }
     read_contents({of.context, of.desc, path, block, of.depth + 1}, contents);

@@ -197,7 +197,7 @@ void check_piece(const tcv::Piece &piece) {
   const char *place = piece.place.c_str();
   vtkUnstructuredGrid *grid = piece.grid;
   if (grid->GetNumberOfPoints() == 0) tcv::fail(TETCAST_ERROR_DATA, "%s: holds no points", place);
-  tcv::check_points(place, grid->GetPoints());
+  tcv::check_dimension(place, grid->GetPoints());
   tcv::check_cells(place, grid->GetCells(), grid->GetNumberOfPoints(), "cell");
   const vtkUnsignedCharArray *types = grid->GetCellTypesArray();
   if (!types || types->GetNumberOfValues() != grid->GetNumberOfCells()) {
@@ -237,8 +237,12 @@ Grid unite(const Reading &reading, std::vector<Piece> *pieces, TetcastDatasetPie
     find_ghosts((*pieces)[p].grid, &maps[p]);
     counts->ghost_cells += maps[p].ghost_cells;
     counts->ghost_points += maps[p].ghost_points;
+    drop_nonfinite((*pieces)[p].grid, &maps[p]);
+    counts->nonfinite_cells += maps[p].nonfinite_cells;
+    const bool repeats = p > 0 && (*pieces)[p].grid->GetPoints() == (*pieces)[p - 1].grid->GetPoints(); // Exodus' blocks
+    if (!repeats) counts->nonfinite_points += maps[p].nonfinite_points;
   }
-  if (maps.size() == 1 && counts->ghost_cells == 0 && reading.desc->merge_tolerance < 0) return (*pieces)[0].grid;
+  if (maps.size() == 1 && counts->ghost_cells == 0 && counts->nonfinite_points == 0 && reading.desc->merge_tolerance < 0) return (*pieces)[0].grid;
 
   auto grid = Grid::New();
   grid->SetPoints(merge_points(*pieces, reading.desc->merge_tolerance, &maps, &counts->merged_points));

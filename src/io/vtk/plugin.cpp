@@ -16,6 +16,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <vtkSMPTools.h>
+
 #include "common.hpp"
 #include "files.hpp"
 #include "formats.hpp"
@@ -82,6 +84,7 @@ static void stop_if_endless(int) {
   const itimerval interval = {{0, 250000}, {0, 250000}};
   setitimer(ITIMER_REAL, &interval, nullptr);
   limit_memory();
+  vtkSMPTools::SetBackend("Sequential"); // threads that the host has started for TBB are not in this process
   try {
     PluginResult result;
     read(&request, &result);
@@ -127,7 +130,7 @@ static void try_in_child(PluginRead read, const PluginRequest &request, const ch
 static void read_plugin(const Reading &reading, const char *name, const char *format, Contents *contents) {
   const char *path = reading.path.c_str();
   const PluginRead read = load(path, name);
-  const PluginRequest request = {reading.path, [&](const std::vector<double> &times) { return choose_step(reading.path, *reading.desc, times); }};
+  const PluginRequest request = {reading.path, reading.desc->only, [&](const std::vector<double> &times) { return choose_step(reading.path, *reading.desc, times); }};
   try_in_child(read, request, format);
   const auto result = captured(reading.context, path, [&] {
     PluginResult all;

@@ -16,6 +16,7 @@ namespace tcv {
 
 struct PluginRequest {
   std::string path;
+  const char *only; // of the description
   std::function<int64_t(const std::vector<double> &times)> choose; // the step to be read; throws if there is no such
 };
 

@@ -6,6 +6,7 @@
 #include <vtkUnstructuredGrid.h>
 
 #include "plugin_read.hpp"
+#include "selector.hpp"
 
 void tetcast_vtk_plugin_read(const tcv::PluginRequest *request, tcv::PluginResult *result) {
   vtkNew<vtkExodusIIReader> reader;
@@ -17,8 +18,12 @@ void tetcast_vtk_plugin_read(const tcv::PluginRequest *request, tcv::PluginResul
   reader->GenerateObjectIdCellArrayOff();
   reader->GenerateGlobalElementIdArrayOff();
   reader->GenerateGlobalNodeIdArrayOff();
-  reader->SetAllArrayStatus(vtkExodusIIReader::NODAL, 1);
-  reader->SetAllArrayStatus(vtkExodusIIReader::ELEM_BLOCK, 1);
+  for (const int kind : {vtkExodusIIReader::NODAL, vtkExodusIIReader::ELEM_BLOCK}) {
+    reader->SetAllArrayStatus(kind, 1);
+    for (int i = 0; i < reader->GetNumberOfObjectArrays(kind); ++i) {
+      if (!tcv::may_name(request->only, reader->GetObjectArrayName(kind, i))) reader->SetObjectArrayStatus(kind, i, 0);
+    }
+  }
   tcv::read_step(reader, *request, result);
   auto *output = vtkMultiBlockDataSet::SafeDownCast(result->object);
   auto *blocks = output && output->GetNumberOfBlocks() > 0 ? vtkMultiBlockDataSet::SafeDownCast(output->GetBlock(0)) : nullptr;

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "points.hpp"
 
+#include <algorithm>
 #include <climits>
 #include <cmath>
 #include <cstring>
 
 #include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
+#include <vtkCellArray.h>
 #include <vtkNew.h>
 
 #include "common.hpp"
@@ -202,6 +204,34 @@ vtkSmartPointer<vtkPoints> merge_as(const std::vector<tcv::Piece> &pieces, int64
 } // namespace
 
 namespace tcv {
+
+void drop_nonfinite(vtkUnstructuredGrid *grid, PieceMap *map) {
+  vtkPoints *points = grid->GetPoints();
+  const int64_t count = points ? points->GetNumberOfPoints() : 0;
+  if (count == 0 || first_nonfinite(points->GetData()) < 0) return;
+  std::vector<unsigned char> bad;
+  for (int64_t i = 0; i < count; ++i) {
+    double p[3];
+    points->GetPoint(i, p);
+    if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) continue;
+    if (map->dropped_points.empty()) map->dropped_points.assign(static_cast<size_t>(count), 0);
+    if (map->dropped_points[static_cast<size_t>(i)]) continue; // with ghosts
+    if (bad.empty()) bad.assign(static_cast<size_t>(count), 0);
+    bad[static_cast<size_t>(i)] = map->dropped_points[static_cast<size_t>(i)] = 1;
+    ++map->nonfinite_points;
+  }
+  if (map->nonfinite_points == 0) return;
+  if (map->dropped_cells.empty()) map->dropped_cells.assign(static_cast<size_t>(grid->GetNumberOfCells()), 0);
+  for (int64_t i = 0; i < grid->GetNumberOfCells(); ++i) {
+    vtkIdType size;
+    const vtkIdType *corners;
+    grid->GetCells()->GetCellAtId(i, size, corners);
+    unsigned char &dropped = map->dropped_cells[static_cast<size_t>(i)];
+    if (dropped || std::none_of(corners, corners + size, [&](vtkIdType j) { return bad[static_cast<size_t>(j)]; })) continue;
+    dropped = 1;
+    ++map->nonfinite_cells;
+  }
+}
 
 vtkSmartPointer<vtkPoints> merge_points(const std::vector<Piece> &pieces, double tolerance, std::vector<PieceMap> *maps, int64_t *merged) {
   int64_t limit = 0;

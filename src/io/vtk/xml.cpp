@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "attributes.hpp"
 #include "common.hpp"
 #include "files.hpp"
 #include "formats.hpp"
+#include "selector.hpp"
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
+#include <vtkDataArraySelection.h>
 #include <vtkIdTypeArray.h>
 #include <vtkImageData.h>
 #include <vtkInputStream.h>
@@ -96,7 +100,22 @@ private:
 
 // What VTK leaves unchecked in readers of every kind.
 template <typename Base> class Guarded : public Base {
+public:
+  void set_only(const char *selector) { only_ = selector; } // of the description; must outlive the reader
+
 protected:
+  void SetupOutputInformation(vtkInformation *information) override {
+    Base::SetupOutputInformation(information);
+    leave_out_unwanted();
+  }
+
+  void leave_out_unwanted() {
+    for (int i = 0; only_ && i < this->NumberOfPieces; ++i) {
+      leave_out(this->PointDataElements[i], this->PointDataArraySelection);
+      leave_out(this->CellDataElements[i], this->CellDataArraySelection);
+    }
+  }
+
   void CreateXMLParser() override {
     if (this->XMLParser) this->DestroyXMLParser();
     this->XMLParser = Parser::New();
@@ -122,6 +141,23 @@ protected:
     }
     return Base::ReadArrayValues(element, index, array, start, count, type);
   }
+
+private:
+  // Ghosts, and what curved cells need, are read at any rate.
+  void leave_out(vtkXMLDataElement *arrays, vtkDataArraySelection *selection) {
+    for (int i = 0; arrays && i < arrays->GetNumberOfNestedElements(); ++i) {
+      const char *name = arrays->GetNestedElement(i)->GetAttribute("Name");
+      if (!name || tcv::is_ghost_array(name) || tcv::may_name(only_, name)) continue;
+      bool needed = false;
+      for (const char *role : {"RationalWeights", "HigherOrderDegrees"}) {
+        const char *of_role = arrays->GetAttribute(role);
+        needed = needed || (of_role && std::strcmp(of_role, name) == 0);
+      }
+      if (!needed) selection->DisableArray(name);
+    }
+  }
+
+  const char *only_ = nullptr;
 };
 
 // VTK allocates and clears what a header claims before it looks for the data, and takes negative counts as they are.
@@ -193,8 +229,34 @@ public:
 protected:
   int ReadPieceData() override { return faces_fit() ? vtkXMLUnstructuredGridReader::ReadPieceData() : 0; }
 
+  // VTK takes the first piece's arrays for those of all: it passes over others, and puts the values of one into another that it expects
+  // in its place.
+  void SetupOutputInformation(vtkInformation *information) override {
+    Checked::SetupOutputInformation(information);
+    for (int i = 0; i < this->NumberOfPieces; ++i) { // those there are already stay as they are
+      add_all(this->PointDataElements[i], this->PointDataArraySelection);
+      add_all(this->CellDataElements[i], this->CellDataArraySelection);
+    }
+    leave_out_unwanted();
+  }
+  void SetupOutputData() override { // pieces are read one by one
+    const int piece = this->StartPiece < this->NumberOfPieces ? this->StartPiece : 0;
+    std::swap(this->PointDataElements[0], this->PointDataElements[piece]);
+    std::swap(this->CellDataElements[0], this->CellDataElements[piece]);
+    vtkXMLUnstructuredGridReader::SetupOutputData();
+    std::swap(this->PointDataElements[0], this->PointDataElements[piece]);
+    std::swap(this->CellDataElements[0], this->CellDataElements[piece]);
+  }
+
 private:
   using Numbers = vtkSmartPointer<vtkIdTypeArray>;
+
+  static void add_all(vtkXMLDataElement *arrays, vtkDataArraySelection *selection) {
+    for (int i = 0; arrays && i < arrays->GetNumberOfNestedElements(); ++i) {
+      const char *name = arrays->GetNestedElement(i)->GetAttribute("Name");
+      if (name) selection->AddArray(name);
+    }
+  }
 
   Numbers numbers(vtkXMLDataElement *element, int64_t count) {
     const auto values = vtkSmartPointer<vtkAbstractArray>::Take(this->CreateArray(element));
@@ -235,15 +297,16 @@ private:
   }
 };
 
-template <typename Reader> auto read(const char *path) {
+template <typename Reader> auto read(const char *path, const char *only = nullptr) {
   vtkNew<Reader> reader;
   reader->SetFileName(path);
+  reader->set_only(only);
   reader->Update();
   return vtkSmartPointer<std::remove_pointer_t<decltype(reader->GetOutput())>>(reader->GetOutput());
 }
 
 template <typename Reader> void read_structured(const tcv::Reading &reading, tcv::Contents *contents) {
-  const auto grid = tcv::captured(reading.context, reading.path.c_str(), [&] { return read<Structured<Reader>>(reading.path.c_str()); });
+  const auto grid = tcv::captured(reading.context, reading.path.c_str(), [&] { return read<Structured<Reader>>(reading.path.c_str(), reading.desc->only); });
   tcv::add_grid(reading, reading.block, grid, contents);
 }
 
@@ -256,6 +319,7 @@ void read_vtu(const Reading &reading, Contents *contents) {
     std::vector<Grid> grids;
     vtkNew<GridReader> reader;
     reader->SetFileName(reading.path.c_str());
+    reader->set_only(reading.desc->only);
     reader->UpdateInformation();
     const int count = std::max(reader->pieces(), 1);
     for (int i = 0; i < count; ++i) {

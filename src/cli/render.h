@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A run of tetcast render, and what one picture and a series of them share. */
+#ifndef TETCAST_CLI_RENDER_H
+#define TETCAST_CLI_RENDER_H
+
+#include <pthread.h>
+#include <semaphore.h>
+
+#include "adapter.h"
+#include "json.h"
+#include "render_options.h"
+#include "stage.h"
+#include "stats.h"
+
+typedef struct Run {
+  RenderOptions options;
+  const CliImage *image;
+  TetcastImageDesc image_desc;
+  pthread_t image_thread;
+  sem_t image_begun;
+  bool image_pending; /* image_thread still has to be waited for */
+  Stage stage;
+  TetcastFrame *frame;
+  RunStats stats; /* of the last picture */
+} Run;
+
+/* Each step returns an exit code. */
+int render_create_frame(Run *run);
+int render_frame(Run *run);
+int render_write_image(Run *run, const char *path);
+
+/* Waits until the image library is loaded and the output has been checked, which is done beside the first reading. */
+void render_await_image(Run *run);
+
+#endif

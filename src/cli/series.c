@@ -1,0 +1,327 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "series.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cli.h"
+#include "file.h"
+#include "progress.h"
+#include "scene_file.h"
+
+typedef struct Series {
+  Run *run;
+  int64_t count;      /* of steps in the file */
+  int64_t begin, end; /* those to be rendered */
+  double *times;      /* [count]; NULL: the file knows of none */
+  double range[2];
+  int64_t densest; /* the step whose values are the largest on average */
+  json_t *entries; /* of the statistics */
+  TetcastCamera camera;
+  int64_t loaded; /* the step that the volume is of, -1: none yet */
+  bool held;      /* interruptions are */
+  char label[64], place[32];
+} Series;
+
+/* ── names ── */
+
+/* Where in a name the number goes: "##…" or "%4d", "%04d". Its length, 0: nowhere. */
+static size_t find_number(const char *path, size_t *at, int *width) {
+  const char *name = cli_path_name(path);
+  for (const char *c = name; *c; c++) {
+    const size_t hashes = strspn(c, "#");
+    size_t length = 0;
+    *width = 0;
+    if (hashes >= 2) {
+      *width = (int)(hashes < 64 ? hashes : 64);
+      length = hashes;
+    } else if (*c == '%') {
+      const size_t digits = strspn(c + 1, "0123456789");
+      if (digits <= 3 && c[1 + digits] == 'd') {
+        length = digits + 2;
+        *width = atoi(c + 1) < 64 ? atoi(c + 1) : 64;
+      }
+    }
+    *at = (size_t)(c - path);
+    if (length > 0)
+      return length;
+  }
+  return 0;
+}
+
+static bool has_number(const RenderOptions *options) {
+  size_t at;
+  int width;
+  return render_options_given(options, OPTION_OUTPUT) && find_number(options->output, &at, &width) > 0;
+}
+
+static bool is_all(const RenderOptions *options) {
+  return options->time ? !strcmp(options->time, "all") : has_number(options);
+}
+
+bool series_wanted(const RenderOptions *options) {
+  return is_all(options) || has_number(options) || render_options_range(options) == RANGE_SERIES;
+}
+
+/* The name of a step's picture, for free(). */
+static char *name_of(const RenderOptions *options, int64_t step) {
+  const char *output = options->output;
+  size_t at;
+  int width;
+  const size_t length = find_number(output, &at, &width);
+  if (length > 0)
+    return cli_print("%.*s%0*lld%s", (int)at, output, width, (long long)step, output + at + length);
+  if (!is_all(options))
+    return cli_duplicate(output);
+  const char *dot = strrchr(cli_path_name(output), '.');
+  const int stem = (int)(dot ? (size_t)(dot - output) : strlen(output));
+  return cli_print("%.*s.%04lld%s", stem, output, (long long)step, output + stem);
+}
+
+/* ── steps ── */
+
+static void show_step(Series *series, const char *what, int64_t step) {
+  snprintf(series->label, sizeof series->label, "%s %lld/%lld", what, (long long)step + 1, (long long)series->count);
+  snprintf(series->place, sizeof series->place, "step %lld", (long long)step);
+  cli_set_place(series->count > 1 ? series->place : NULL);
+}
+
+/* Signals end the process at once while a step is read; from its preparation on they wait until what is being done is done. */
+static void let_go(Series *series) {
+  if (!series->held)
+    return;
+  series->held = false;
+  cli_progress_clear();
+  cli_interrupt_hold(false);
+}
+
+/* Reads the step and prepares its volume, unless that has been done. */
+static int load(Series *series, int64_t step) {
+  Stage *stage = &series->run->stage;
+  const RenderOptions *options = &series->run->options;
+  if (series->loaded == step)
+    return CLI_DONE;
+  let_go(series);
+  int code = stage_read_step(stage, options, step);
+  if (code != CLI_DONE)
+    return code;
+  series->held = true;
+  code = stage_prepare(stage, options);
+  stage_drop_dataset(stage);
+  series->loaded = step;
+  return code;
+}
+
+/* How many steps there are, and which are asked for. */
+static int find_steps(Series *series) {
+  Stage *stage = &series->run->stage;
+  const RenderOptions *options = &series->run->options;
+  const int code = stage_read(stage, options);
+  if (code != CLI_DONE)
+    return code;
+  double time;
+  while (cli_vtk()->dataset_time(stage->dataset, series->count, &time))
+    series->count++;
+  if (series->count > 0)
+    series->times = cli_allocate(sizeof *series->times * (size_t)series->count);
+  for (int64_t i = 0; i < series->count; i++)
+    cli_vtk()->dataset_time(stage->dataset, i, &series->times[i]);
+  if (series->count == 0)
+    series->count = 1;
+  series->begin = is_all(options) ? 0 : stage->step;
+  series->end = is_all(options) ? series->count : stage->step + 1;
+  return CLI_DONE;
+}
+
+/* The range of the values of all steps. Meshes are not prepared for that. */
+static int find_range(Series *series) {
+  series->range[0] = INFINITY;
+  series->range[1] = -INFINITY;
+  double densest = -INFINITY;
+  for (int64_t i = 0; i < series->count; i++) {
+    show_step(series, "range", i);
+    StageValues values;
+    const int code = stage_read_values(&series->run->stage, &series->run->options, i, &values);
+    if (code != CLI_DONE)
+      return code;
+    if (values.nonfinite < values.count) {
+      series->range[0] = fmin(series->range[0], values.range[0]);
+      series->range[1] = fmax(series->range[1], values.range[1]);
+    }
+    if (values.nonfinite < values.count && values.mean > densest) {
+      densest = values.mean;
+      series->densest = i;
+    }
+    cli_progress_part(series->label, (double)i / (double)series->count, (double)(i + 1) / (double)series->count);
+    cli_progress_show(1);
+  }
+  if (series->range[0] > series->range[1])
+    series->range[0] = series->range[1] = 0;
+  cli_progress_clear();
+  cli_progress_part(NULL, 0, 1);
+  return CLI_DONE;
+}
+
+/* What all steps share: transfer function and camera. */
+static int find_scene(Series *series) {
+  Stage *stage = &series->run->stage;
+  const RenderOptions *options = &series->run->options;
+  const RangeKind kind = render_options_range(options);
+  int code = CLI_DONE;
+  if (!stage->transfer_function && kind != RANGE_STEP && !render_options_direct(options)) {
+    if (kind != RANGE_FIXED)
+      code = find_range(series);
+    if (code == CLI_DONE)
+      code = load(series, series->densest);
+    if (code == CLI_DONE)
+      code = stage_shade(stage, options, series->range);
+  }
+  if (code == CLI_DONE)
+    code = load(series, 0);
+  series->camera = stage->camera;
+  return code;
+}
+
+/* ── pictures ── */
+
+static json_t *entry_of(const Series *series, int64_t step, const char *path, bool kept) {
+  json_t *entry = json_object();
+  json_object_set_new(entry, "step", json_integer(step));
+  json_object_set_new(entry, "time", series->times ? json_real(series->times[step]) : json_null());
+  json_object_set_new(entry, "output", cli_json_text(path));
+  json_object_set_new(entry, "kept", json_boolean(kept));
+  if (!kept)
+    json_object_update_new(entry, stats_object(&series->run->stats));
+  return entry;
+}
+
+static bool same_content(const char *left, const char *right) {
+  FILE *a = fopen(left, "rb"), *b = fopen(right, "rb");
+  bool same = a && b;
+  while (same) {
+    char from_a[4096], from_b[4096];
+    const size_t size = fread(from_a, 1, sizeof from_a, a);
+    same = fread(from_b, 1, sizeof from_b, b) == size && !memcmp(from_a, from_b, size);
+    if (size < sizeof from_a)
+      break;
+  }
+  if (a)
+    fclose(a);
+  if (b)
+    fclose(b);
+  return same;
+}
+
+/* Pictures of a former run go with those of this one if one of them is what this run makes of its step. */
+static int check_former(Series *series, const char *path) {
+  char *folder = cli_path_folder(path);
+  const char *dot = strrchr(cli_path_name(path), '.');
+  char *again = cli_print("%s/.tetcast-%ld-again%s", folder, (long)getpid(), dot ? dot : "");
+  int code = render_write_image(series->run, again);
+  if (code == CLI_DONE && !same_content(again, path)) {
+    cli_error("--resume: '%s' is not the picture that would be made now: settings or data were others; without --resume all are made anew",
+              path);
+    code = CLI_FAILED;
+  }
+  unlink(again);
+  free(folder);
+  free(again);
+  return code;
+}
+
+static int render_step(Series *series, int64_t step, const char *path, bool kept) {
+  Run *run = series->run;
+  Stage *stage = &run->stage;
+  const double steps = (double)(series->end - series->begin), done = (double)(step - series->begin) / steps;
+  show_step(series, "step", step);
+  cli_progress_part(series->label, done, done + 0.3 / steps);
+  int code = load(series, step);
+  stage->camera = series->camera;
+  if (render_options_range(&run->options) == RANGE_STEP)
+    tetcast_transfer_function_destroy(&stage->transfer_function);
+  if (code == CLI_DONE)
+    code = stage_shade(stage, &run->options, stage->info.field_range);
+  cli_progress_part(series->label, done + 0.3 / steps, done + 1 / steps);
+  if (code == CLI_DONE)
+    code = render_frame(run);
+  if (code == CLI_DONE)
+    code = kept ? check_former(series, path) : render_write_image(run, path);
+  return code;
+}
+
+/* Size of the picture that a former run has made of the step, 0: none, or it is not to be kept. */
+static off_t size_kept(const Series *series, int64_t step) {
+  char *path = name_of(&series->run->options, step);
+  struct stat status;
+  const bool kept = series->run->options.resume && stat(path, &status) == 0 && S_ISREG(status.st_mode);
+  free(path);
+  return kept ? status.st_size : 0;
+}
+
+/* The largest of the pictures that are kept shows most; a first one may be empty, whatever the settings. */
+static int check_kept(Series *series) {
+  int64_t largest = series->begin;
+  for (int64_t i = series->begin; i < series->end; i++)
+    if (size_kept(series, i) > size_kept(series, largest))
+      largest = i;
+  if (size_kept(series, largest) == 0)
+    return CLI_DONE;
+  char *path = name_of(&series->run->options, largest);
+  const int code = render_step(series, largest, path, true);
+  free(path);
+  return code;
+}
+
+static int render_steps(Series *series) {
+  int code = check_kept(series);
+  for (int64_t i = series->begin; i < series->end && code == CLI_DONE; i++) {
+    char *path = name_of(&series->run->options, i);
+    const bool kept = size_kept(series, i) > 0;
+    if (!kept)
+      code = render_step(series, i, path, false);
+    json_array_append_new(series->entries, entry_of(series, i, path, kept));
+    free(path);
+    if (cli_interrupted())
+      code = CLI_FAILED;
+  }
+  cli_progress_clear();
+  cli_progress_part(NULL, 0, 1);
+  return code;
+}
+
+static int write_files(const Series *series) {
+  const RenderOptions *options = &series->run->options;
+  const Stage *stage = &series->run->stage;
+  const bool own = render_options_range(options) == RANGE_STEP;
+  if (options->save_scene && !scene_file_write(options, stage->array, &series->camera, own ? NULL : stage->transfer_function))
+    return CLI_FAILED;
+  if (!options->stats)
+    return CLI_DONE;
+  json_t *root = json_object();
+  json_object_set(root, "steps", series->entries);
+  return cli_json_write(options->stats, root) ? CLI_DONE : CLI_FAILED;
+}
+
+int series_perform(Run *run) {
+  Series series = {.run = run, .loaded = -1, .entries = json_array()};
+  cli_warn_once();
+  run->stage.of_series = true;
+  int code = find_steps(&series);
+  render_await_image(run);
+  if (code == CLI_DONE)
+    code = find_scene(&series);
+  if (code == CLI_DONE)
+    code = render_create_frame(run);
+  if (code == CLI_DONE)
+    code = render_steps(&series);
+  if (code == CLI_DONE)
+    code = write_files(&series);
+  cli_set_place(NULL);
+  json_decref(series.entries);
+  free(series.times);
+  return code;
+}

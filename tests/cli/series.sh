@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+# A picture of each time step: names, one range, one camera, what is kept of a run that was stopped.
+. "$(dirname "$0")/lib.sh"
+needs vtk openimageio
+
+# Three steps: the same mesh twice, then one of twice the size; values up to 6, 60 and 0.6.
+vtu a.vtu "$five_tetrahedra" 10
+scalar='0 10 30 20 30 40 60 50' vtu b.vtu "$five_tetrahedra" 10
+scalar='0 .1 .3 .2 .3 .4 .6 .5' vtu c.vtu "$five_tetrahedra" 10 "${cube//1/2}"
+cat >s.pvd <<'END'
+<VTKFile type="Collection" version="0.1"><Collection>
+<DataSet timestep="0" file="a.vtu"/><DataSet timestep="0.5" file="b.vtu"/><DataSet timestep="2" file="c.vtu"/>
+</Collection></VTKFile>
+END
+small='--size 40x30'
+
+# Names.
+accept render s.pvd --time all $small
+exists s.0000.png s.0001.png s.0002.png
+accept render s.pvd --time all $small -o x.png
+accept render s.pvd $small -o y.##.png
+accept render s.pvd $small -o z%03dz.png
+accept render s.pvd --time=-2 $small -o one.%d.png
+exists x.0000.png y.00.png z002z.png one.1.png
+[ ! -e s.0003.png ] && [ ! -e one.0.png ] && [ ! -e y.03.png ] || fail "too many pictures: $(files)"
+for i in 0 1 2; do
+  same s.000$i.png x.000$i.png
+  same s.000$i.png y.0$i.png
+  same s.000$i.png z00${i}z.png
+done
+same s.0001.png one.1.png 'a step as it is in the series'
+accept render s.pvd --time 1 --range series $small -o one.png
+same s.0001.png one.png 'a step with the range of the series'
+# Of a file without steps, too.
+accept render b.vtu --time all $small
+accept render b.vtu $small -o lone.##.png
+accept render b.vtu $small -o lone.png
+exists b.0000.png
+same lone.png lone.00.png
+accept render s.pvd $small -o 'plain#.png'
+accept render a.vtu $small -o a.png
+same a.png 'plain#.png' 'a plain name is for one picture of the first step'
+
+# Ranges: the series' by default; each step's; a given one.
+accept render s.pvd --time all --range 0,60 $small -o fixed.png
+accept render s.pvd --time all --range series $small -o series.png
+accept render s.pvd --time all --range step $small -o step.png
+for i in 0 1 2; do same s.000$i.png series.000$i.png; done
+same step.0000.png a.png 'a range of its own'
+accept render b.vtu $small -o b.png
+same step.0001.png b.png 'a range of its own'
+differ s.0000.png a.png 'range'
+same s.0001.png b.png 'the largest step decides'
+accept render s.pvd --time all --preset inferno --range 0,60 $small -o inferno.png
+differ fixed.0001.png inferno.0001.png preset
+echo '{"color": [[0,1,0,0],[60,0,0,1]], "extinction": [[0,0],[60,5]]}' >t.json
+accept render s.pvd --time all --transfer t.json $small -o given.png
+accept render b.vtu --transfer t.json $small -o b.png
+same given.0001.png b.png 'a transfer function'
+# The camera is the first step's, and the mesh of the third is prepared anew.
+accept render c.vtu --transfer t.json $small -o c.png
+differ given.0002.png c.png 'camera'
+accept render c.vtu --transfer t.json $small -o c.png --eye 0.5,0.5,3.8460652149512322 --target 0.5,0.5,0.5
+accept render s.pvd --time all --transfer t.json $small --eye 0.5,0.5,3.8460652149512322 --target 0.5,0.5,0.5 -o given.png
+same given.0002.png c.png 'the third mesh'
+
+# Statistics: an entry a step. Scenes: all of it again.
+accept render s.pvd --time all $small -o x.png --stats stats.json --save-scene scene.json
+[ "$(grep -c '"render_seconds"' stats.json)" = 3 ] || fail "statistics: $(cat stats.json)"
+output=$(tr -d '\n' <stats.json)
+contains '"step": 1, +"time": 0.5, +"output": "x.0001.png", +"kept": false'
+mkdir again
+mv scene.json again
+sed -i 's|"input": "|"input": "../|' again/scene.json
+accept render --scene again/scene.json
+for i in 0 1 2; do same again/x.000$i.png x.000$i.png scene; done
+accept render s.pvd --time all --range step $small -o step.png --save-scene step.json
+rm step.0*.png
+accept render --scene step.json
+same step.0000.png a.png 'a saved scene with ranges of their own'
+
+# Resumed: what is there is kept, if it is what would be made.
+rm x.0002.png
+touch -d '2001-01-01' x.0000.png x.0001.png
+accept render s.pvd --time all $small -o x.png --resume --stats stats.json
+same x.0002.png s.0002.png
+[ "$(grep -c '"kept": true' stats.json)" = 2 ] || fail "kept: $(cat stats.json)"
+[ "$(find . -maxdepth 1 -name 'x.*' ! -newermt 2002-01-01 | wc -l)" = 2 ] || fail "pictures were replaced: $(ls -l x.*)"
+rm x.0000.png
+accept render s.pvd --time all $small -o x.png --resume
+same x.0000.png s.0000.png
+rm x.0001.png
+refuse 1 '.png'"' is not the picture" render s.pvd --time all $small -o x.png --resume --preset inferno
+refuse 1 '.png'"' is not the picture" render s.pvd --time all --size 41x30 -o x.png --resume
+rm -f y.*
+accept render s.pvd --time all --range 6,60 $small -o y.png # empty but for one
+rm y.0002.png
+refuse 1 "--resume: 'y.0001.png' is not the picture" render s.pvd --time all --range 6,60 $small -o y.png --resume --preset inferno
+accept render s.pvd --time all $small -o x.png # and anew
+exists x.0001.png
+
+# Stopped.
+for signal in HUP:129 TERM:143; do # the shell keeps SIGINT from what runs beside it
+  checks=$((checks + 1))
+  IFS=: read -r name expected <<<"$signal"
+  rm -f slow*
+  "$tetcast" render s.pvd -o slow.##.png --size 600x600 --samples 64 --stats slow.json --save-scene slow-scene.json 2>"$work.err" &
+  pid=$!
+  for _ in $(seq 600); do
+    [ ! -e slow.00.png ] || break
+    sleep 0.05
+  done
+  kill -s "$name" "$pid"
+  wait "$pid"
+  code=$?
+  [ "$code" = "$expected" ] || fail "exit code $code after $name"
+  [ "$(cat "$work.err")" = 'tetcast: error: interrupted' ] || fail "standard error: $(cat "$work.err")"
+  rm -f "$work.err"
+  exists slow.00.png
+  [ ! -e slow.02.png ] && [ ! -e slow.json ] && [ ! -e slow-scene.json ] && [ -z "$(find . -name '.tetcast*')" ] ||
+    fail "files are left: $(files)"
+done
+accept render s.pvd -o slow.##.png --size 600x600 --samples 64 --resume --quiet
+exists slow.00.png slow.01.png slow.02.png
+
+# A step that can't be read ends the run, and what was made stays.
+cp s.pvd bad.pvd
+sed -i 's/c.vtu/missing.vtu/' bad.pvd
+refuse 1 'missing.vtu' render bad.pvd --time all $small -o bad.png
+"$tetcast" render bad.pvd --time all --range 0,60 $small -o bad.png 2>err && fail 'exit code 0 with a missing step'
+grep -q '^tetcast: error: step 2: .*missing.vtu' err || fail "$(cat err)"
+exists bad.0000.png bad.0001.png
+sed 's/Name="s"/Name="t"/' b.vtu >other.vtu
+sed -i 's/missing.vtu/other.vtu/' bad.pvd
+refuse 1 "step 2: bad.pvd: has no array 's'" render bad.pvd --time all $small -o none.png
+# Values that are not finite: said once, and not for each step.
+scalar='0 nan 3 2 3 4 6 5' vtu a.vtu "$five_tetrahedra" 10
+scalar='0 nan 30 nan 30 40 60 50' vtu b.vtu "$five_tetrahedra" 10
+warn 'NaN' render s.pvd --time all $small -o nan.png
+"$tetcast" render s.pvd --time all $small -o nan.png 2>err
+[ "$(wc -l <err)" = 1 ] || fail "$(cat err)"
+
+# What makes no sense.
+refuse 2 'all' render s.pvd --time every
+refuse 2 'or step, or series' render s.pvd --range steps
+refuse 2 'exclude' render s.pvd --range series --transfer t.json
+refuse 2 '--time all' converge s.pvd -o report --time all
+refuse 2 '--range series' converge s.pvd -o report --range series
+refuse 1 'extension' render s.pvd --time all -o folder
+finish
