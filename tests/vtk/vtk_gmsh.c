@@ -185,7 +185,8 @@ static void test_second_order(void **state) {
       assert_int_equal(tetcast_dataset_mesh(dataset, &mesh), TETCAST_OK);
       assert_int_equal(tetcast_mesh_health(fixture->context, mesh, &health), TETCAST_OK);
       const TetcastCutInfo info = tetcast_dataset_cut(dataset);
-      if (fabs(health.volume / second_order[i].volume - 1) > 1e-12 || health.inverted_cells || info.folded || info.segments[0] != 2) {
+      if (fabs(health.volume / second_order[i].volume - 1) > 1e-12 || health.inverted_cells || health.degenerate_cells || health.unused_vertices ||
+          info.folded || info.segments[0] != 2) {
         print_error("type %d: volume %g, %d inverted\n", second_order[i].type, health.volume, (int)health.inverted_cells);
         fail();
       }
@@ -237,7 +238,20 @@ static void test_errors(void **state) {
   tetcast_dataset_destroy(&dataset);
 }
 
+/* The parts that partitions have of an entity say which groups they are in. */
+static void test_partitions(void **state) {
+  Fixture *fixture = *state;
+  static const char text[] =
+    "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 1\n1 0 0 0 1 1 1 1 5 0\n$EndEntities\n"
+    "$PartitionedEntities\n2\n1\n9 2\n1 0 0 2\n7 0 3 1 1 0 0 0 0\n2 3 1 1 1 0 0 0 1 1 1 1 5 1 7\n3 3 1 2 1 2 0 0 0 1 1 1 2 6 5 0\n$EndPartitionedEntities\n"
+    "$Nodes\n1 5 1 5\n3 2 0 5\n1\n2\n3\n4\n5\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n$EndNodes\n"
+    "$Elements\n2 2 1 2\n3 2 4 1\n1 1 2 3 4\n3 3 4 1\n2 2 3 4 5\n$EndElements\n$GhostElements\n1\n2 2 1 1\n$EndGhostElements\n";
+  TetcastDataset *dataset = read_good(fixture, text_file(fixture, "p.msh", text));
+  assert_true(value(dataset, "physical", 0) == 5 && value(dataset, "physical", 1) == 6);
+  tetcast_dataset_destroy(&dataset);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {TEST(test_variants), TEST(test_subdivision), TEST(test_second_order), TEST(test_errors)};
+  const struct CMUnitTest tests[] = {TEST(test_variants), TEST(test_subdivision), TEST(test_second_order), TEST(test_partitions), TEST(test_errors)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
