@@ -43,8 +43,9 @@ TETCAST_API TetcastDatasetDesc tetcast_dataset_desc_default(void);
 TETCAST_API bool tetcast_dataset_format(int i, const char **name, const char **extensions);
 
 /* Reads a file in one of these formats; which one is told by content, then by extension. desc NULL: the default. TETCAST_ERROR_IO:
- * can't be opened. TETCAST_ERROR_DATA: truncated, damaged, no mesh, no cells, only surface cells, indices out of range. TETCAST_ERROR_ARGUMENT: has no such block or step; the message lists those there are. The reader library's own complaints become
- * part of the message. Formats that VTK reads without care are tried in a child process first, which may crash.
+ * can't be opened. TETCAST_ERROR_DATA: truncated, damaged, no mesh, no cells, only surface cells, indices out of range.
+ * TETCAST_ERROR_ARGUMENT: has no such block or step; the message lists those there are. The reader library's own complaints become part of the
+ * message. Formats that VTK reads without care are tried in a child process first, which may crash.
  *
  * Structured grids become hexahedra. Of a file in pieces or blocks, ghost cells (vtkGhostType, vtkGhostLevels: copies of another piece's
  * cells) and blanked ones are left out, as are pieces without volume, and coincident points of different pieces become one, so that the

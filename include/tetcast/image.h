@@ -36,7 +36,8 @@ TETCAST_API TetcastImageDesc tetcast_image_desc_default(void);
  * type the format can't hold, an unknown extension: TETCAST_ERROR_ARGUMENT. Over a translucent background, integer formats with alpha
  * hold unassociated colour. A frame's channels follow the four in .exr and .tif with floating-point pixels (float beside half in .exr), in this
  * order and in EXR by these names: "radiance", "optical_depth", "transmittance", "path_length", "error"; of several groups
- * "radiance.00", "radiance.01" …, as many digits as the last needs. What can't hold them: TETCAST_ERROR_ARGUMENT. The file appears whole or not at all. */
+ * "radiance.00", "radiance.01" …, as many digits as the last needs. What can't hold them: TETCAST_ERROR_ARGUMENT. The file appears whole or
+ * not at all. */
 TETCAST_API TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, const TetcastFrame *frame,
                                               const TetcastImageDesc *desc);
 

@@ -90,7 +90,8 @@ TETCAST_API TetcastRenderDesc tetcast_render_desc_default(void);
 typedef struct TetcastRenderStats {
   int64_t rays;         /* cast: width × height × samples */
   int64_t segments;     /* cells crossed over a length > 0, summed over the rays */
-  double error;         /* largest of the pixels' bounds as in TETCAST_CHANNEL_ERROR; NaN with another integrator than the exact one and with coefficients */
+  double error;         /* largest of the pixels' bounds as in TETCAST_CHANNEL_ERROR; NaN with another integrator than the exact one and with
+                         * coefficients */
   int64_t lost;         /* rays whose walk ended before the boundary: 0, or a defect of tetcast */
   const char *isa;      /* instruction set of the kernel that ran; static storage */
   const char *precision; /* of the arithmetic: "double"; static storage */

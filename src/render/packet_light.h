@@ -171,7 +171,8 @@ static __attribute__((noinline)) void tc_lights_split_depth(TcLights *lights, co
 }
 
 /* tc_light_add() in the lanes of `mask`. */
-TC_INLINE void tc_lights_add(const bool colored, TcLights *lights, const TcPieces *pieces, double thin, TcMask mask, TcVec length, TcVec s0, TcVec s1) {
+TC_INLINE void tc_lights_add(const bool colored, TcLights *lights, const TcPieces *pieces, double thin, TcMask mask, TcVec length, TcVec s0,
+                             TcVec s1) {
   const TcPiece *piece = &pieces->pieces[lights->piece];
   const TcVec low = tc_set(piece->low), high = tc_set(piece->high), least = tc_min(s0, s1), most = tc_max(s0, s1);
   const TcMask here = tc_and(mask, tc_and(tc_and(tc_le(low, least), tc_lt(least, high)), tc_le(most, high)));

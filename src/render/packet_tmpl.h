@@ -64,8 +64,8 @@ TC_INLINE unsigned at_shell(const TcShell *shell, TcMask active, TcWord cell) {
 }
 
 /* The light of what walks have crossed, in the lanes of `moved`: `cell` from depth z and scalar s on, what lies beyond *seen. */
-TC_INLINE void add_light(const TetcastVolume *volume, const bool cells, const bool colored, const TcPieces *pieces, TcMask moved, TcVec z, TcVec s, TcWord cell,
-                         Packet *packet, TcWorker *worker) {
+TC_INLINE void add_light(const TetcastVolume *volume, const bool cells, const bool colored, const TcPieces *pieces, TcMask moved, TcVec z,
+                         TcVec s, TcWord cell, Packet *packet, TcWorker *worker) {
   const TcWalks *walks = &packet->walks;
   const TcVec from = packet->seen;
   moved = tc_and(moved, tc_gt(walks->z, from));
@@ -140,7 +140,8 @@ static void arrive(const TcShell *shell, Packet *packet) {
  * the face where they leave is left when they end; they need not be looked at one by one, and what is hard to predict is not branched on.
  *
  * A packet's next step waits for the one before, about 200 cycles; another packet's fits in between. */
-TC_INLINE void advance(const TcShell *shell, const bool wide, const bool cells, const bool colored, const TcPieces *pieces, TcWorker *worker, Packet *packet) {
+TC_INLINE void advance(const TcShell *shell, const bool wide, const bool cells, const bool colored, const TcPieces *pieces, TcWorker *worker,
+                       Packet *packet) {
   TcMask active[TC_PACKETS];
   bool halt = false;
   TC_EACH_PACKET {
