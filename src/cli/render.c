@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <tetcast/tetcast.h>
@@ -96,11 +95,6 @@ static void before_fork(void) {
 static int begin_image(Run *run) {
   if (!cli_vtk()) /* before the thread begins: only one library is loaded at a time */
     return CLI_FAILED;
-#ifdef __SANITIZE_ADDRESS__ /* a fork must not meet its allocator in use: by then the image library's own threads have come to rest */
-  const int code = check_image(run);
-  nanosleep(&(struct timespec){.tv_nsec = 150000000}, NULL);
-  return code;
-#endif
   running = run;
   if (pthread_atfork(before_fork, NULL, NULL) != 0)
     return check_image(run);

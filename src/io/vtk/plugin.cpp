@@ -55,7 +55,9 @@ static void limit_memory() {
 #endif
 }
 
-enum Trial { GOOD = 0, BAD = 1, OTHER_FORMAT = 2, ENDLESS = 3 };
+enum Trial { GOOD = 0, BAD = 1, OTHER_FORMAT = 2, ENDLESS = 3, STUCK = 4 };
+
+const int trials = 3, patience = 16; // a trial that waits is stopped after this many quarters of a second, and a sleeping disk is up again
 
 // How many bytes this process has read; -1 where the system does not say.
 static double bytes_read() {
@@ -68,10 +70,17 @@ static double bytes_read() {
 }
 
 // VTK's readers look for words that a damaged file does not have, without end: they compute and read nothing any more. What a whole file
-// takes is far less than this. Called by the timer.
+// takes is far less than this. And a process that neither computes nor reads waits for a lock that some thread of the host's held when it
+// began, a thread that it has not. Called by the timer.
 static void stop_if_endless(int) {
+  static double bytes_before, seconds_before;
+  static int waits;
   const double bytes = bytes_read(), seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
   if (bytes >= 0 && seconds > 3 + 4e-6 * bytes) _exit(ENDLESS);
+  waits = bytes - bytes_before < 64 && seconds - seconds_before < 1e-3 ? waits + 1 : 0; // less is the timer's own
+  if (waits == patience) _exit(STUCK);
+  bytes_before = bytes;
+  seconds_before = seconds;
 }
 
 // `output` is a pipe, for what is printed: a library must not, and what makes a reader do so is damaged.
@@ -99,10 +108,9 @@ static void stop_if_endless(int) {
   }
 }
 
-// VTK's readers crash on some damaged files, and print about others: a child process tries first.
-static void try_in_child(PluginRead read, const PluginRequest &request, const char *format) {
+// What became of a child process that reads the file: a status as of waitpid().
+static int trial(PluginRead read, const PluginRequest &request) {
   const char *path = request.path.c_str();
-  const Capture capture; // what is said through VTK is none of the printing
   int output[2];
   if (pipe2(output, O_NONBLOCK | O_CLOEXEC) != 0) fail(TETCAST_ERROR_MEMORY, "%s: no process could be started to try reading it", path);
   std::fflush(stdout); // the child would print what is left in there
@@ -115,14 +123,25 @@ static void try_in_child(PluginRead read, const PluginRequest &request, const ch
   while (waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) fail(TETCAST_ERROR_IO, "%s: the process that tried reading it is lost", path);
   }
-  if (WIFEXITED(status) && WEXITSTATUS(status) == OTHER_FORMAT) {
-    fail(TETCAST_ERROR_UNSUPPORTED, "%s: is not a file of format %s, or damaged", path, format);
+  return status;
+}
+
+// VTK's readers crash on some damaged files, and print about others: a child process tries first. One that is stuck is followed by another,
+// as threads hold locks for moments only.
+static void try_in_child(PluginRead read, const PluginRequest &request, const char *format) {
+  const char *path = request.path.c_str();
+  const Capture capture; // what is said through VTK is none of the printing
+  int result = STUCK;
+  for (int i = 0; i < trials && result == STUCK; ++i) {
+    const int status = trial(read, request);
+    result = WIFEXITED(status) ? WEXITSTATUS(status) : BAD;
   }
-  if (WIFEXITED(status) && WEXITSTATUS(status) == ENDLESS) {
-    fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: VTK's reader of %s files does not come to an end", path, format);
-  }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != GOOD) {
-    fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: VTK's reader of %s files fails on it", path, format);
+  switch (result) {
+  case GOOD: return;
+  case OTHER_FORMAT: fail(TETCAST_ERROR_UNSUPPORTED, "%s: is not a file of format %s, or damaged", path, format);
+  case ENDLESS: fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: VTK's reader of %s files does not come to an end", path, format);
+  case STUCK: fail(TETCAST_ERROR_IO, "%s: the process that tries reading it waits, for its disk or for locks that threads of this program hold", path);
+  default: fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: VTK's reader of %s files fails on it", path, format);
   }
 }
 
