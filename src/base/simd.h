@@ -281,6 +281,48 @@ TC_INLINE void tc_transpose(const TcRecord record[TC_LANES], TcVec component[4])
 #endif
 }
 
+/* Components 0, 1, 2 become those along kx, ky, kz: kx = (kz + 1) % 3, ky = (kz + 2) % 3. */
+TC_INLINE void tc_turn(int kz, TcVec component[3]) {
+  const TcVec x = component[0], y = component[1], z = component[2];
+  switch (kz) { /* the same for many packets: well predicted */
+  case 0: component[0] = y, component[1] = z, component[2] = x; break;
+  case 1: component[0] = z, component[1] = x, component[2] = y; break;
+  default: break;
+  }
+}
+
+typedef float TcNarrow __attribute__((vector_size(16))); /* a vertex in single precision */
+
+/* tc_transpose() and tc_turn(): shuffled first, as half as long vectors. */
+TC_INLINE void tc_transpose_narrow(const TcNarrow record[TC_LANES], int kz, TcVec component[4]) {
+#if defined(TC_SIMD_AVX512)
+#define TC_COLUMN(k) (k), (k) + 4, (k) + 8, (k) + 12, (k) + 16, (k) + 20, (k) + 24, (k) + 28
+  static const _Alignas(64) int32_t columns[3][2][16] = {{{TC_COLUMN(1), TC_COLUMN(2)}, {TC_COLUMN(0), TC_COLUMN(3)}},
+                                                         {{TC_COLUMN(2), TC_COLUMN(0)}, {TC_COLUMN(1), TC_COLUMN(3)}},
+                                                         {{TC_COLUMN(0), TC_COLUMN(1)}, {TC_COLUMN(2), TC_COLUMN(3)}}};
+#undef TC_COLUMN
+  __m512 half[2];
+  for (int i = 0; i < 2; ++i) {
+    half[i] = _mm512_insertf32x4(_mm512_castps128_ps512((__m128)record[4 * i]), (__m128)record[4 * i + 1], 1);
+    half[i] = _mm512_insertf32x4(half[i], (__m128)record[4 * i + 2], 2);
+    half[i] = _mm512_insertf32x4(half[i], (__m128)record[4 * i + 3], 3);
+  }
+  for (int k = 0; k < 4; k += 2) {
+    const __m512 pair = _mm512_permutex2var_ps(half[0], _mm512_load_si512(columns[kz][k / 2]), half[1]);
+    component[k] = (TcVec)_mm512_cvtps_pd(_mm512_castps512_ps256(pair));
+    component[k + 1] = (TcVec)_mm512_cvtps_pd(_mm512_extractf32x8_ps(pair, 1));
+  }
+#else
+  const TcNarrow a = __builtin_shufflevector(record[0], record[1], 0, 4, 1, 5), b = __builtin_shufflevector(record[2], record[3], 0, 4, 1, 5);
+  const TcNarrow c = __builtin_shufflevector(record[0], record[1], 2, 6, 3, 7), d = __builtin_shufflevector(record[2], record[3], 2, 6, 3, 7);
+  component[0] = __builtin_convertvector(__builtin_shufflevector(a, b, 0, 1, 4, 5), TcVec);
+  component[1] = __builtin_convertvector(__builtin_shufflevector(a, b, 2, 3, 6, 7), TcVec);
+  component[2] = __builtin_convertvector(__builtin_shufflevector(c, d, 0, 1, 4, 5), TcVec);
+  component[3] = __builtin_convertvector(__builtin_shufflevector(c, d, 2, 3, 6, 7), TcVec);
+  tc_turn(kz, component);
+#endif
+}
+
 /* Four doubles from each of base[offset[i]], base[offset[i] + 4], …: component[4 k + j][i] is double j of record k of lane i. Loads and
  * shuffles, as above. `count`, of records, is a constant wherever this is used. */
 TC_INLINE void tc_load_records(const double *base, TcLong offset, const int count, TcVec component[]) {

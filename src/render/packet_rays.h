@@ -91,7 +91,8 @@ static void face_candidate(void *user, uint32_t i, unsigned lanes) {
   for (int k = 0; k < 3; ++k) {
     double record[4];
     tc_volume_vertex(query->shell->volume, face->vertex[k], record);
-    const TcVec component[4] = {tc_set(record[0]), tc_set(record[1]), tc_set(record[2]), tc_set(record[3])};
+    TcVec component[4] = {tc_set(record[0]), tc_set(record[1]), tc_set(record[2]), tc_set(record[3])};
+    tc_turn(query->rays->kz, component);
     p[k] = tc_project_components(query->rays, component, tc_set_word(face->vertex[k]));
   }
   TcVec e[3], z, s;
