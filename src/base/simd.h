@@ -244,9 +244,8 @@ TC_INLINE TcWord tc_fives_first(const TcFives *fives) {
 #endif
 }
 
-/* Word 1 + rank, where the rank, up to 3, is how many of four conditions hold: −1 for each that does. */
-TC_INLINE TcWord tc_fives_ranked(const TcFives *fives, const TcWord condition[4]) {
-  const TcWord minus_rank = (condition[0] + condition[1]) + (condition[2] + condition[3]);
+/* Word 1 + rank; the rank, up to 3, comes as −rank: a sum of comparisons. */
+TC_INLINE TcWord tc_fives_ranked(const TcFives *fives, TcWord minus_rank) {
 #if defined(TC_SIMD_AVX512)
   return tc_fives_word(fives, (__m256i)(1 - minus_rank));
 #else

@@ -35,6 +35,7 @@ typedef struct Packet {
   uint32_t face[TC_LANES];
   TcSpans *spans;
   int64_t x, y; /* first pixel */
+  double single[TC_LANES]; /* bound of what is off by single precision */
 } Packet;
 
 /* The next face at which a lane sets out, or false. next: where to look from. */
@@ -99,6 +100,7 @@ static bool packet_begin(const TcShell *shell, const TcRays *placed, const TcVec
   packet->seen = tc_set(0);
   packet->lanes = lanes;
   packet->ended = packet->starting = packet->stopped = 0;
+  memset(packet->single, 0, sizeof packet->single);
   packet->steps = 0;
   packet->spans = spans;
   if (!trace(shell, &packet->rays, lanes, spans)) return false;
@@ -202,6 +204,8 @@ static Advance *advance_for(const TetcastVolume *volume, const TcPieces *pieces)
   return ways[!pieces->one_color][volume->association == TETCAST_CELL][volume->vertices_are_double];
 }
 
+#include "render/packet_single.h"
+
 /* Where packets come from, and what becomes of their light. */
 typedef struct Source {
   bool (*next)(void *user, TcSpans *spans, Packet *packet, bool *more); /* *more: whether there was one. False: out of memory */
@@ -227,13 +231,18 @@ static void end_lights(const TcPieces *pieces, TcLights *lights) {
 
 /* All packets of a source, several at a time. */
 static bool run_packets(const TcShell *shell, const TcPieces *pieces, TcWorker *worker, const Source *source) {
-  Advance *const step = advance_for(shell->volume, pieces);
-  Packet packets[TC_PACKETS];
-  bool under_way[TC_PACKETS] = {false};
+  enum { MOST = 2 * TC_PACKETS };
+  Advance *step = advance_for(shell->volume, pieces);
+  int count = TC_PACKETS;
+#ifdef TC_HAVE_SINGLE
+  if (worker->tolerance.single_most > 0) step = single_advance_for(shell->volume, pieces), count = MOST;
+#endif
+  Packet packets[MOST];
+  bool under_way[MOST] = {false};
   memset(packets, 0, sizeof packets);
   for (;;) {
     bool any = false;
-    for (int i = 0; i < TC_PACKETS; ++i) {
+    for (int i = 0; i < count; ++i) {
       while (!packet_runs(&packets[i])) {
         if (under_way[i]) {
           end_lights(pieces, &packets[i].lights);
@@ -310,7 +319,7 @@ static void finish_of_tile(void *user, const Packet *packet) {
     const TcLight light = {.depth = packet->lights.depth[i], .stopped = packet->stopped >> i & 1};
     for (int k = 0; k < 3; ++k) sum[k] += packet->lights.color[k][i];
     sum[3] += alpha[i];
-    sum[4] += tc_tolerance_bound(&tile->worker->tolerance, &light, alpha[i], packet->steps);
+    sum[4] += tc_tolerance_bound(&tile->worker->tolerance, &light, alpha[i], packet->steps) + packet->single[i];
   }
 }
 

@@ -149,8 +149,8 @@ TC_INLINE TcMask tc_step_out(const bool cells, TcMask active, const TcStep *step
   for (int k = 0; k < 3; ++k) out[k] = tc_and_not(positive[(k + 2) % 3], positive[(k + 1) % 3]);
   const TcWord left = tc_select_word(out[0], v[0].id, tc_select_word(out[1], v[1].id, v[2].id));
   /* The neighbour has the rank of `left` among the four. */
-  const TcWord above[4] = {tc_above(left, q.id), tc_above(left, v[0].id), tc_above(left, v[1].id), tc_above(left, v[2].id)};
-  walks->cell = tc_select_word(active, tc_fives_ranked(&step->cells, above), walks->cell);
+  const TcWord minus_rank = (tc_above(left, q.id) + tc_above(left, v[0].id)) + (tc_above(left, v[1].id) + tc_above(left, v[2].id));
+  walks->cell = tc_select_word(active, tc_fives_ranked(&step->cells, minus_rank), walks->cell);
   for (int k = 0; k < 3; ++k) {
     const TcVec edge = tc_select(out[(k + 1) % 3], e[k], walks->edge[k]);
     walks->edge[k] = tc_select(out[k], -e[(k + 1) % 3], edge);

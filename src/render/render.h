@@ -10,6 +10,7 @@
 #include "optics/tolerance.h"
 #include "traverse/coefficients.h"
 #include "traverse/shell.h"
+#include "traverse/steepness.h"
 #include "traverse/trace.h"
 
 enum { TC_CHANNELS = 5 };
@@ -47,6 +48,8 @@ struct TetcastScene {
   int64_t field_number;            /* for which the rest holds; 0: for none */
   TetcastTransferFunction *scaled; /* in the volume's units */
   TcShell shell;                   /* of what can be seen */
+  bool steepness_known;            /* found by the first frame with a tolerance that may need it */
+  TcSteepness steepness;
 };
 
 /* A camera in scaled coordinates: position (u, v) ∈ [−1, 1]² of the picture looks along forward + u right + v up (perspective), or
@@ -72,12 +75,13 @@ void tc_frame_put(TetcastFrame *frame, TetcastChannel channel, int64_t x, int64_
 enum {
   TC_TILE = 16,   /* pixels a side, at most, of what a kernel renders at once */
   TC_PACKET = 8,  /* rays, at most */
-  TC_PACKETS = 2  /* packets that a worker has under way */
+  TC_PACKETS = 2, /* packets that a worker has under way; twice as many, in pairs, in single precision */
+  TC_RAYS = 2 * TC_PACKETS * TC_PACKET
 };
 
 /* What a worker keeps to itself. */
 typedef struct TcWorker {
-  TcSpans spans[TC_PACKETS * TC_PACKET]; /* of the rays of packets; the scalar kernel uses the first */
+  TcSpans spans[TC_RAYS]; /* of the rays of packets; the scalar kernel uses the first */
   const struct TcSampler *sampler; /* NULL: exact */
   TcTolerance tolerance;
   int64_t segments, lost;

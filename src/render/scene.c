@@ -21,6 +21,7 @@ static void forget(TetcastScene *scene) {
   tc_transfer_destroy(scene->scaled);
   scene->scaled = NULL;
   scene->field_number = 0;
+  scene->steepness_known = false;
 }
 
 /* Calls for one scene may come at the same time: one of them does the work. None is under way that uses what is replaced, as neither
@@ -36,6 +37,25 @@ static TetcastStatus prepare(TetcastScene *scene) {
     if (!status) scene->field_number = volume->field_number;
   }
   pthread_mutex_unlock(&scene->mutex);
+  return status;
+}
+
+/* Single precision for packets, where a bound on what it costs leaves enough of the tolerance: that is at first asked with a field without
+ * slope, since finding its slope takes a while. */
+static TetcastStatus allow_single(TetcastScene *scene, double wanted, TcTolerance *tolerance) {
+  const TetcastVolume *volume = scene->volume;
+  const TcPieces *pieces = &scene->scaled->pieces;
+  TcTolerance half = tc_tolerance_begin(pieces, 0.5 * wanted), flat = half;
+  TcExtent extent = {.radius = volume->radius};
+  if (volume->association != TETCAST_POINT || !(half.thin > 0)) return TETCAST_OK;
+  if (!tc_tolerance_allow_single(pieces, &extent, 0.5 * wanted, &flat)) return TETCAST_OK;
+  TetcastStatus status = TETCAST_OK;
+  pthread_mutex_lock(&scene->mutex);
+  if (!scene->steepness_known) status = tc_steepness(volume, &scene->steepness);
+  scene->steepness_known = !status;
+  pthread_mutex_unlock(&scene->mutex);
+  extent = (TcExtent){volume->radius, scene->steepness.diameter, scene->steepness.gradient, scene->steepness.value};
+  if (!status && tc_tolerance_allow_single(pieces, &extent, 0.5 * wanted, &half)) *tolerance = half;
   return status;
 }
 
@@ -150,7 +170,7 @@ static TetcastStatus run(TetcastContext *context, Render *render, const TcWorker
     stats->segments += worker->segments;
     stats->lost += worker->lost;
     stats->error = fmax(stats->error, worker->error);
-    for (int j = 0; j < TC_PACKETS * TC_PACKET; ++j) {
+    for (int j = 0; j < TC_RAYS; ++j) {
       if (worker->spans[j].out_of_memory) status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: hits of a ray");
       tc_spans_clear(&worker->spans[j]);
     }
@@ -166,7 +186,7 @@ TetcastStatus tc_scene_render(TetcastScene *scene, const TetcastCamera *camera, 
   const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
   Render render = {.kernel = tc_kernel_sampled};
   TcWorker start = {.sampler = NULL};
-  for (int i = 0; i < TC_PACKETS * TC_PACKET; ++i) start.spans[i].context = context;
+  for (int i = 0; i < TC_RAYS; ++i) start.spans[i].context = context;
   TcJob *job = &render.job;
   job->width = frame->width;
   job->height = frame->height;
@@ -188,6 +208,12 @@ TetcastStatus tc_scene_render(TetcastScene *scene, const TetcastCamera *camera, 
     start.sampler = sampler;
     start.tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);
     if (exact) render.kernel = choose_kernel(job, desc->isa, &sum.isa);
+#ifdef TC_HAVE_X86
+    if (render.kernel == tc_kernel_avx2 || render.kernel == tc_kernel_avx512) {
+      status = allow_single(scene, desc->tolerance, &start.tolerance);
+      if (start.tolerance.single_most > 0) sum.precision = "single";
+    }
+#endif
   }
   if (!status) status = run(context, &render, &start, &desc->progress, &sum);
   tc_sampler_destroy(sampler);
