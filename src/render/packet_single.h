@@ -228,7 +228,8 @@ static float least_of(TcFloats s, unsigned lanes) {
 static __attribute__((noinline)) void single_split(const bool colored, Single *single, const TcPieces *pieces, float thin, TcFloatMask mask,
                                                    const TcFloats segment[3]) {
   const unsigned lanes = tcf_bits(mask);
-  const TcFloats zero = tcf_set(0), one = tcf_set(1), s0 = segment[1], s1 = segment[2], whole = tcf_abs(s1 - s0);
+  const TcFloats zero = tcf_set(0), one = tcf_set(1), s0 = tcf_select(mask, segment[1], zero), s1 = tcf_select(mask, segment[2], zero);
+  const TcFloats whole = tcf_abs(s1 - s0);
   const TcFloatMask rises = tcf_le(s0, s1);
   const float low = least_of(tcf_min(s0, s1), lanes), high = -least_of(-tcf_max(s0, s1), lanes);
   const int64_t first = tc_piece_above(pieces, (double)low), last = tc_piece_above(pieces, (double)high);
@@ -367,10 +368,11 @@ static unsigned single_at_shell(const TcShell *shell, TcFloatMask active, TcWord
 TC_INLINE void single_advance(const TcShell *shell, const bool wide, const bool colored, const TcPieces *pieces, TcWorker *worker,
                               Single *single) {
   TcFloatMask active[TC_PACKETS];
-  bool halt = false;
+  bool halt = true;
   TC_EACH_PACKET {
     if (single[i].starting) single_set_out(shell, wide, &single[i]);
     active[i] = tcf_mask_of(single[i].active & ~single[i].ended);
+    halt = halt && !single[i].active; /* none of those that were to set out could */
   }
   while (!halt) {
     SingleStep step[TC_PACKETS];

@@ -1,0 +1,283 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Single precision: the bound holds for random scenes and where it is hardest to keep, along the boundary of a mesh seen edge-on, in a slit, among
+ * slivers; and where there is no bound, double precision is used. Prints how much of the bounds is used. */
+#include "support.h"
+
+#include "base/cpu.h"
+#include "traverse/steepness.h"
+
+enum { WIDTH = 37, HEIGHT = 23, PIXELS = WIDTH * HEIGHT };
+
+typedef struct Look {
+  double rgba[4 * PIXELS], error[PIXELS];
+  TetcastRenderStats stats;
+} Look;
+
+static void look(TetcastContext *context, const TetcastScene *scene, const TetcastCamera *camera, TetcastIsa isa, double tolerance, Look *look) {
+  TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
+  frame_desc.width = WIDTH;
+  frame_desc.height = HEIGHT;
+  frame_desc.channels = TETCAST_CHANNEL_ERROR;
+  TetcastFrame *frame = NULL;
+  assert_int_equal(tetcast_frame_create(context, &frame_desc, &frame), TETCAST_OK);
+  TetcastRenderDesc desc = tetcast_render_desc_default();
+  desc.tolerance = tolerance;
+  desc.isa = isa;
+  assert_int_equal(tetcast_scene_render(scene, camera, &desc, frame, &look->stats), TETCAST_OK);
+  assert_int_equal(look->stats.lost, 0);
+  memcpy(look->rgba, tetcast_frame_pixels(frame), sizeof look->rgba);
+  memcpy(look->error, tetcast_frame_channel(frame, TETCAST_CHANNEL_ERROR), sizeof look->error);
+  tetcast_frame_destroy(&frame);
+}
+
+/* What is seen with a tolerance is as near to the exact picture as is said. Returns the kernels that used single precision; *used: the largest
+ * share of a bound. */
+static int check(TetcastContext *context, const TetcastVolume *volume, const TetcastTransferFunction *transfer, const TetcastCamera *camera,
+                 double tolerance, double *used) {
+  static Look exact, picture;
+  TetcastScene *scene = scene_of(context, volume, transfer);
+  int single = 0;
+  look(context, scene, camera, TETCAST_ISA_AUTO, 0, &exact);
+  assert_string_equal(exact.stats.precision, "double");
+  for (TetcastIsa isa = TETCAST_ISA_SCALAR; isa <= TETCAST_ISA_AVX512; ++isa) {
+    if (!tc_cpu_has(isa)) continue;
+    look(context, scene, camera, isa, tolerance, &picture);
+    const bool is_single = strcmp(picture.stats.precision, "single") == 0;
+    single += is_single;
+    if (isa < TETCAST_ISA_AVX2) assert_false(is_single);
+    for (int i = 0; i < PIXELS; ++i) {
+      assert_true(picture.error[i] <= tolerance);
+      for (int k = 0; k < 4; ++k) {
+        const double off = fabs(picture.rgba[4 * i + k] - exact.rgba[4 * i + k]);
+        assert_true(off <= picture.error[i] + exact.error[i]);
+        if (used && is_single && picture.error[i] > 0) *used = fmax(*used, off / picture.error[i]);
+      }
+      assert_true((picture.rgba[4 * i + 3] > 0) == (exact.rgba[4 * i + 3] > 0));
+    }
+  }
+  tetcast_scene_destroy(&scene);
+  return single;
+}
+
+static int kernels(void) { return tc_cpu_has(TETCAST_ISA_AVX512) + tc_cpu_has(TETCAST_ISA_AVX2); }
+
+/* Continuous, with up to eight knots; now and then of one colour. */
+static TetcastTransferFunction *continuous(TetcastContext *context, uint64_t *seed, double strength) {
+  double color[8][4], extinction[8][2];
+  const bool gray = uniform(seed) < 0.25;
+  for (int i = 0; i < 8; ++i) {
+    color[i][0] = (i + 0.5 * uniform(seed)) / 8;
+    extinction[i][0] = i % 2 ? color[i][0] : (i + 0.5 * uniform(seed)) / 8;
+    for (int k = 1; k < 4; ++k) color[i][k] = gray ? 0.25 * k : uniform(seed);
+    extinction[i][1] = uniform(seed) < 0.3 ? 0 : strength * uniform(seed);
+  }
+  TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
+  desc.color = color[0];
+  desc.extinction = extinction[0];
+  desc.color_count = desc.extinction_count = 8;
+  TetcastTransferFunction *transfer = NULL;
+  assert_int_equal(tetcast_transfer_function_create(context, &desc, &transfer), TETCAST_OK);
+  return transfer;
+}
+
+/* Turned so that nothing lies along an axis. */
+static void turn(double p[3]) {
+  static const double axis[3][3] = {{0.36, 0.48, -0.8}, {-0.8, 0.6, 0}, {0.48, 0.64, 0.6}};
+  double q[3];
+  for (int k = 0; k < 3; ++k) q[k] = axis[k][0] * p[0] + axis[k][1] * p[1] + axis[k][2] * p[2];
+  memcpy(p, q, sizeof q);
+}
+
+/* As float, which a volume then stores. */
+static TetcastVolume *narrow_volume(TetcastContext *context, const Cube *cube) {
+  float *vertices = malloc((size_t)cube->vertex_count * 3 * sizeof *vertices), *values = malloc((size_t)cube->vertex_count * sizeof *values);
+  for (int64_t j = 0; j < 3 * cube->vertex_count; ++j) vertices[j] = (float)cube->vertices[j];
+  for (int64_t j = 0; j < cube->vertex_count; ++j) values[j] = (float)cube->values[j];
+  TetcastMeshDesc mesh_desc = tetcast_mesh_desc_default();
+  mesh_desc.vertices = (TetcastArray){vertices, TETCAST_TYPE_FLOAT32, cube->vertex_count, 0};
+  mesh_desc.tetrahedra = (TetcastArray){cube->cells, TETCAST_TYPE_INT64, cube->cell_count, 0};
+  TetcastFieldDesc field_desc = tetcast_field_desc_default();
+  field_desc.values = (TetcastArray){values, TETCAST_TYPE_FLOAT32, cube->vertex_count, 0};
+  TetcastMesh *mesh = NULL;
+  TetcastField *field = NULL;
+  assert_int_equal(tetcast_mesh_create(context, &mesh_desc, &mesh), TETCAST_OK);
+  assert_int_equal(tetcast_field_create(context, &field_desc, &field), TETCAST_OK);
+  TetcastVolume *volume = volume_of(context, mesh, TETCAST_TRAVERSAL_SHELL);
+  assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
+  tetcast_field_destroy(&field);
+  tetcast_mesh_destroy(&mesh);
+  free(vertices);
+  free(values);
+  return volume;
+}
+
+static TetcastCamera random_camera(int i, uint64_t *seed) {
+  TetcastCamera camera = camera_of(0, 0, 0, 0, 0, 0);
+  for (int k = 0; k < 3; ++k) {
+    camera.eye[k] = i % 5 == 1 ? uniform(seed) : 5 * uniform(seed) - 2; /* some inside */
+    camera.target[k] = 0.3 + 0.4 * uniform(seed);
+  }
+  if (i % 3 == 0) camera.projection = TETCAST_ORTHOGRAPHIC;
+  if (i % 6 == 0) { /* rays within faces, through vertices */
+    for (int k = 0; k < 3; ++k) camera.eye[k] = camera.target[k] = 0.5;
+    camera.eye[i / 6 % 3] = 4;
+    camera.up[1] = i / 6 % 3 != 1;
+    camera.up[2] = i / 6 % 3 == 1;
+  }
+  return camera;
+}
+
+static void bounds_hold(void **state) {
+  (void)state;
+  Fixture fixture;
+  assert_int_equal(fixture_begin(&fixture, 2, 0), TETCAST_OK);
+  uint64_t seed = 11;
+  int single = 0;
+  double used = 0;
+  for (int i = 0; i < 60; ++i) {
+    Cube cube = cube_create(2 + i % 9, i % 4 ? 0.7 : 0);
+    if (i % 10 == 9) { /* a thin plate */
+      for (int64_t j = 0; j < cube.vertex_count; ++j) cube.vertices[3 * j + 2] = 0.5 + 1e-3 * cube.vertices[3 * j + 2];
+    }
+    TetcastVolume *volume = i % 2 ? narrow_volume(fixture.context, &cube) : cube_volume(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
+    TetcastTransferFunction *transfer = continuous(fixture.context, &seed, power(&seed, -3, 2));
+    const TetcastCamera camera = random_camera(i, &seed);
+    single += check(fixture.context, volume, transfer, &camera, i % 3 ? 1e-2 : 1e-3, &used);
+    tetcast_transfer_function_destroy(&transfer);
+    tetcast_volume_destroy(&volume);
+    cube_destroy(&cube);
+  }
+  printf("%d of %d pictures in single precision, off by up to %.2g of the bound\n", single, 60 * kernels(), used);
+  if (kernels()) assert_true(single > 30);
+  fixture_end(&fixture);
+}
+
+/* Two cubes turned askew, one on top of the other and not connected, with different fields, seen exactly along the faces between them and along
+ * their sides, rays a little to either side: vertices in single precision are not in one plane any more. */
+static void edge_on(void **state) {
+  (void)state;
+  Fixture fixture;
+  assert_int_equal(fixture_begin(&fixture, 2, 0), TETCAST_OK);
+  uint64_t seed = 3;
+  Cube one = cube_create(6, 0.4), two = {2 * one.vertex_count, 2 * one.cell_count, NULL, NULL, NULL};
+  two.vertices = malloc((size_t)two.vertex_count * 3 * sizeof *two.vertices);
+  two.values = malloc((size_t)two.vertex_count * sizeof *two.values);
+  two.cells = malloc((size_t)two.cell_count * 4 * sizeof *two.cells);
+  for (int64_t i = 0; i < two.vertex_count; ++i) {
+    const int64_t j = i % one.vertex_count;
+    double *p = &two.vertices[3 * i];
+    memcpy(p, &one.vertices[3 * j], 3 * sizeof *p);
+    p[1] += i >= one.vertex_count;
+    turn(p);
+    two.values[i] = i < one.vertex_count ? 0.9 : 0.1 + 0.1 * one.values[j];
+  }
+  for (int64_t i = 0; i < 4 * two.cell_count; ++i) {
+    two.cells[i] = one.cells[i % (4 * one.cell_count)] + (i < 4 * one.cell_count ? 0 : one.vertex_count);
+  }
+  TetcastVolume *volume = cube_volume(fixture.context, &two, TETCAST_TRAVERSAL_SHELL);
+  TetcastTransferFunction *transfer = continuous(fixture.context, &seed, 2);
+  int single = 0;
+  for (int i = 0; i < 12; ++i) { /* the picture is lower than rounding, its middle in the plane */
+    double eye[3] = {i % 2 ? 0.37 : -3, i / 4, i % 2 ? -3 : 0.37}, target[3] = {0.37, i / 4, 0.37}, up[3] = {0, 1, 0};
+    turn(eye), turn(target), turn(up);
+    TetcastCamera camera = camera_of(eye[0], eye[1], eye[2], target[0], target[1], target[2]);
+    memcpy(camera.up, up, sizeof up);
+    camera.projection = TETCAST_ORTHOGRAPHIC;
+    camera.height = i / 2 % 2 ? 1e-6 : 3e-8;
+    single += check(fixture.context, volume, transfer, &camera, 1e-2, NULL);
+  }
+  assert_int_equal(single, 12 * kernels());
+  tetcast_transfer_function_destroy(&transfer);
+  tetcast_volume_destroy(&volume);
+  cube_destroy(&one);
+  cube_destroy(&two);
+  fixture_end(&fixture);
+}
+
+/* The precision that a scene is rendered in with a tolerance of 1e-3: whatever it is, the bound holds. */
+static const char *precision_of(Fixture *fixture, const Cube *cube, TetcastAssociation association, double color[3][4],
+                                double extinction[3][2], double tolerance) {
+  TetcastMesh *mesh = cube_mesh(fixture->context, cube);
+  double *cells = malloc((size_t)cube->cell_count * sizeof *cells);
+  for (int64_t i = 0; i < cube->cell_count; ++i) cells[i] = 0.5;
+  TetcastField *field = association == TETCAST_CELL ? field_of(fixture->context, cells, cube->cell_count, association)
+                                                    : field_of(fixture->context, cube->values, cube->vertex_count, association);
+  TetcastVolume *volume = volume_of(fixture->context, mesh, TETCAST_TRAVERSAL_SHELL);
+  assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
+  TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
+  desc.color = color[0];
+  desc.extinction = extinction[0];
+  desc.color_count = desc.extinction_count = 3;
+  TetcastTransferFunction *transfer = NULL;
+  assert_int_equal(tetcast_transfer_function_create(fixture->context, &desc, &transfer), TETCAST_OK);
+  const TetcastCamera camera = camera_of(2.2, 1.7, 2.9, 0.5, 0.5, 0.5);
+  const int single = check(fixture->context, volume, transfer, &camera, tolerance, NULL);
+  assert_true(single == 0 || single == kernels());
+  tetcast_transfer_function_destroy(&transfer);
+  tetcast_volume_destroy(&volume);
+  tetcast_field_destroy(&field);
+  tetcast_mesh_destroy(&mesh);
+  free(cells);
+  return single ? "single" : "double";
+}
+
+/* Where nothing bounds the error, or not enough. */
+static void without_bound(void **state) {
+  (void)state;
+  enum { PLAIN, STEP, JUMP_OF_COLOR, STEEP, CELLS, NOT_A_NUMBER, OFFSET, SLIVER, FLAT, STRICT, CASES };
+  Fixture fixture;
+  assert_int_equal(fixture_begin(&fixture, 2, 0), TETCAST_OK);
+  for (int i = 0; i < CASES && kernels(); ++i) {
+    Cube cube = cube_create(4, 0.5);
+    double color[3][4] = {{0, 1, 0.5, 0}, {0.5, 0, 1, 0.5}, {1, 0.5, 0, 1}}, extinction[3][2] = {{0, 0}, {0.5, 1}, {1, 2}};
+    if (i == STEP) extinction[0][0] = 0.5; /* from 0 to 1 at once */
+    if (i == JUMP_OF_COLOR) color[0][0] = 0.5;
+    if (i == STEEP) extinction[1][0] = 0.5 - 1e-5, extinction[2][0] = 0.5, extinction[2][1] = 5;
+    if (i == NOT_A_NUMBER) cube.values[62] = NAN;
+    for (int k = 0; i == OFFSET && k < 3; ++k) color[k][0] += 1e5, extinction[k][0] += 1e5;
+    for (int64_t j = 0; i == OFFSET && j < cube.vertex_count; ++j) cube.values[j] += 1e5;
+    /* Two inner vertices almost, or entirely, in one place. */
+    if (i == SLIVER || i == FLAT) memcpy(&cube.vertices[3 * 62], &cube.vertices[3 * 63], 3 * sizeof(double));
+    if (i == SLIVER) cube.vertices[3 * 62] -= 1e-7;
+    assert_string_equal(precision_of(&fixture, &cube, i == CELLS ? TETCAST_CELL : TETCAST_POINT, color, extinction, i == STRICT ? 1e-6 : 1e-3),
+                        i == PLAIN ? "single" : "double");
+    cube_destroy(&cube);
+  }
+  fixture_end(&fixture);
+}
+
+/* A linear field is as steep everywhere, in scaled units. */
+static void steepness_is_that_of_the_field(void **state) {
+  (void)state;
+  Fixture fixture;
+  assert_int_equal(fixture_begin(&fixture, 2, 0), TETCAST_OK);
+  Cube cube = cube_create(5, 0.6);
+  double longest = 0;
+  for (int64_t i = 0; i < cube.vertex_count; ++i) {
+    const double *p = &cube.vertices[3 * i];
+    cube.values[i] = 2 * p[0] - 3 * p[1] + 6 * p[2] - 4;
+  }
+  for (int64_t i = 0; i < cube.cell_count; ++i) {
+    for (int j = 0; j < 6; ++j) {
+      static const int ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+      const double *a = &cube.vertices[3 * cube.cells[4 * i + ends[j][0]]], *b = &cube.vertices[3 * cube.cells[4 * i + ends[j][1]]];
+      longest = fmax(longest, hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]));
+    }
+  }
+  TetcastVolume *volume = cube_volume(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
+  const double unit = ldexp(1, volume->exponent);
+  TcSteepness steepness;
+  assert_int_equal(tc_steepness(volume, &steepness), TETCAST_OK);
+  assert_true(steepness.gradient >= 7 * unit && steepness.gradient <= 7.02 * unit);
+  assert_true(steepness.diameter >= longest / unit && steepness.diameter <= 1.003 * longest / unit);
+  assert_true(steepness.value == 7); /* at (0, 1, 0) */
+  tetcast_volume_destroy(&volume);
+  cube_destroy(&cube);
+  fixture_end(&fixture);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(bounds_hold), cmocka_unit_test(edge_on), cmocka_unit_test(without_bound),
+                                     cmocka_unit_test(steepness_is_that_of_the_field)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
