@@ -81,7 +81,9 @@ typedef struct TetcastRenderDesc {
   int samples;              /* rays per pixel in [1, 2^16], a regular grid as near to square as the number allows; default 1: the centre */
   TetcastIsa isa;   /* at most this one is used; default: auto. All give the same picture up to rounding */
   double tolerance; /* ≥ 0, finite; default 0: exact. Else, a picture sooner: none of a pixel's four channels is further than this from the
-                     * exact picture's. Absolute, in the units of the channel (alpha: 1 is opaque). Only with the exact integrator. */
+                     * exact picture's. Absolute, in the units of the channel (alpha: 1 is opaque). Only with the exact integrator. Rays are walked
+                     * in single precision where a bound on what that costs allows it: with a point field and a transfer function without
+                     * jumps, AVX2 or AVX-512, from 1e-3 or 1e-4 on, depending on how steep both are. */
   TetcastProgress progress;
 } TetcastRenderDesc;
 
@@ -94,7 +96,7 @@ typedef struct TetcastRenderStats {
                          * coefficients */
   int64_t lost;         /* rays whose walk ended before the boundary: 0, or a defect of tetcast */
   const char *isa;      /* instruction set of the kernel that ran; static storage */
-  const char *precision; /* of the arithmetic: "double"; static storage */
+  const char *precision; /* of the arithmetic: "double", or "single" (of the walk, rays where it may not do apart); static storage */
 } TetcastRenderStats;
 
 /* Renders into every pixel of `frame`, all its channels. `desc` and `stats` may be NULL. The scene must have coefficients, or a transfer

@@ -94,7 +94,9 @@ static void put_run(FILE *file, const Converge *converge) {
     fprintf(file, "| picture | %.0f × %.0f pixels, one ray each, %lld segments |\n", options->size[0], options->size[1],
             (long long)converge->rows[0].segments);
   }
-  fprintf(file, "| arithmetic | %s precision; kernels: ", converge->rows[0].precision);
+  bool single = false;
+  for (int i = 0; i < converge->count; ++i) single = single || strcmp(converge->rows[i].precision, "single") == 0;
+  fprintf(file, "| arithmetic | double precision%s; kernels: ", single ? ", single where a tolerance allows it" : "");
   put_kernels(file, converge);
   fputs(" |\n", file);
   fprintf(file, "| machine | %s, %d threads |\n", cpu, tetcast_context_threads(converge->context));
