@@ -6,12 +6,7 @@
 #include "render/packet_rays.h"
 #include "traverse/walk.h"
 
-/* for each packet i of those under way; unrolled, so that their instructions mix */
-#if defined(__clang__)
-#define TC_UNROLLED _Pragma("clang loop unroll(full)")
-#else
-#define TC_UNROLLED _Pragma("GCC unroll 4")
-#endif
+/* for each packet i of those under way */
 #define TC_EACH_PACKET TC_UNROLLED for (int i = 0; i < TC_PACKETS; ++i)
 
 enum {
@@ -89,24 +84,25 @@ TC_INLINE void add_light(const TetcastVolume *volume, const bool cells, const bo
   }
 }
 
-/* The rays along kz among those placed; false: out of memory. */
-static bool packet_begin(const TcShell *shell, const TcRays *placed, const TcVec rest[3], int kz, unsigned lanes, TcSpans *spans,
-                         Packet *packet) {
+/* Rays that wait become a packet, whose spans are free for others. */
+static void packet_begin(Waiting *waiting, Packet *packet) {
+  TcSpans *spans = waiting->spans;
+  waiting->spans = packet->spans;
   memset(&packet->walks, 0, sizeof packet->walks);
-  turn_rays(placed, rest, kz, &packet->rays);
+  packet->rays = waiting->rays;
   tc_lights_begin(&packet->lights);
   packet->active = 0;
   packet->seen = tc_set(0);
-  packet->lanes = lanes;
+  packet->lanes = waiting->lanes;
   packet->ended = packet->starting = packet->stopped = 0;
   packet->steps = 0;
   packet->spans = spans;
-  if (!trace(shell, &packet->rays, lanes, spans)) return false;
+  packet->x = waiting->x;
+  packet->y = waiting->y;
   for (int i = 0; i < TC_LANES; ++i) {
     packet->next[i] = 0;
-    if (lanes >> i & 1 && next_start(&spans[i], &packet->next[i], &packet->face[i])) packet->starting |= 1U << i;
+    if (packet->lanes >> i & 1 && next_start(&spans[i], &packet->next[i], &packet->face[i])) packet->starting |= 1U << i;
   }
-  return true;
 }
 
 static bool packet_runs(const Packet *packet) { return packet->starting || packet->active; }
@@ -204,19 +200,21 @@ static Advance *advance_for(const TetcastVolume *volume, const TcPieces *pieces)
 
 /* Where packets come from, and what becomes of their light. */
 typedef struct Source {
-  bool (*next)(void *user, TcSpans *spans, Packet *packet, bool *more); /* *more: whether there was one. False: out of memory */
+  bool (*next)(void *user, Queue *queue); /* puts the rays of a packet into the queue; false: there are no more */
   void (*finish)(void *user, const Packet *packet);
   void *user;
 } Source;
 
-/* The rays of one kz among those that wait become a packet; false: out of memory. */
-static bool begin_waiting(const TcShell *shell, const TcRays *placed, const TcVec rest[3], unsigned *waiting, TcSpans *spans,
-                          Packet *packet) {
-  unsigned along = 0;
-  int kz = -1;
-  while (!along) along = *waiting & tc_bits(lanes_along(placed->direction, ++kz));
-  *waiting &= ~along;
-  return packet_begin(shell, placed, rest, kz, along, spans, packet);
+/* *more: whether there was one. False: out of memory. */
+static bool next_packet(const Source *source, Queue *queue, Packet *packet, bool *more) {
+  if (queue->next == queue->count) {
+    queue->next = queue->count = 0;
+    while (queue->count < TC_PACKETS && source->next(source->user, queue)) continue;
+    if (!trace(queue)) return false;
+  }
+  *more = queue->next < queue->count;
+  if (*more) packet_begin(&queue->waiting[queue->next++], packet);
+  return true;
 }
 
 static void end_lights(const TcPieces *pieces, TcLights *lights) {
@@ -230,7 +228,12 @@ static bool run_packets(const TcShell *shell, const TcPieces *pieces, TcWorker *
   Advance *const step = advance_for(shell->volume, pieces);
   Packet packets[TC_PACKETS];
   bool under_way[TC_PACKETS] = {false};
+  Queue queue = {.shell = shell};
   memset(packets, 0, sizeof packets);
+  for (int i = 0; i < TC_PACKETS; ++i) {
+    packets[i].spans = worker->spans + i * TC_PACKET;
+    queue.waiting[i].spans = packets[i].spans + TC_LANES;
+  }
   for (;;) {
     bool any = false;
     for (int i = 0; i < TC_PACKETS; ++i) {
@@ -239,7 +242,7 @@ static bool run_packets(const TcShell *shell, const TcPieces *pieces, TcWorker *
           end_lights(pieces, &packets[i].lights);
           source->finish(source->user, &packets[i]);
         }
-        if (!source->next(source->user, worker->spans + i * TC_PACKET, &packets[i], &under_way[i])) return false;
+        if (!next_packet(source, &queue, &packets[i], &under_way[i])) return false;
         if (!under_way[i]) break;
       }
       any = any || under_way[i];
@@ -257,10 +260,9 @@ typedef struct Tile {
   int64_t x0, y0, x1, y1;
   int64_t x, y; /* of the packet whose rays come next */
   int sample;
-  TcRays placed; /* rays that wait: those of one kz go together */
-  TcVec rest[3];
-  unsigned waiting;
-  int64_t waiting_x, waiting_y;
+  Placed placed; /* rays of which those of `left` remain: those of one kz go together */
+  unsigned left;
+  int64_t left_x, left_y;
   double sum[TC_TILE * TC_TILE][5]; /* red, green, blue, alpha, bound of their error */
 } Tile;
 
@@ -280,9 +282,9 @@ static void place_next(Tile *tile) {
   memcpy(&vs, v, sizeof vs);
   Lines lines;
   view_lines(&job->view, us, vs, &lines);
-  tile->waiting = lanes & tc_bits(place_rays(job->shell->volume, &lines, &tile->placed, tile->rest));
-  tile->waiting_x = tile->x;
-  tile->waiting_y = tile->y;
+  tile->left = lanes & tc_bits(place_rays(job->shell->volume, &lines, &tile->placed));
+  tile->left_x = tile->x;
+  tile->left_y = tile->y;
   if (++tile->sample < job->samples_x * job->samples_y) return;
   tile->sample = 0;
   tile->x += PACKET_X;
@@ -291,14 +293,12 @@ static void place_next(Tile *tile) {
   tile->y += PACKET_Y;
 }
 
-static bool next_of_tile(void *user, TcSpans *spans, Packet *packet, bool *more) {
+static bool next_of_tile(void *user, Queue *queue) {
   Tile *tile = user;
-  while (!tile->waiting && tile->y < tile->y1) place_next(tile);
-  *more = tile->waiting != 0;
-  if (!*more) return true;
-  packet->x = tile->waiting_x;
-  packet->y = tile->waiting_y;
-  return begin_waiting(tile->job->shell, &tile->placed, tile->rest, &tile->waiting, spans, packet);
+  while (!tile->left && tile->y < tile->y1) place_next(tile);
+  if (!tile->left) return false;
+  enqueue(&tile->placed, &tile->left, tile->left_x, tile->left_y, queue);
+  return true;
 }
 
 static void finish_of_tile(void *user, const Packet *packet) {
@@ -342,9 +342,8 @@ typedef struct Cast {
   TcLight *light;
   int count, next; /* rays, and the first of those that have not been placed */
   int first;       /* of those placed */
-  TcRays placed;
-  TcVec rest[3];
-  unsigned waiting;
+  Placed placed;
+  unsigned left;   /* of those */
 } Cast;
 
 static void place_cast(Cast *cast) {
@@ -358,18 +357,17 @@ static void place_cast(Cast *cast) {
       lines.direction[k][i] = line->direction[k];
     }
   }
-  cast->waiting = ((1U << rays) - 1) & tc_bits(place_rays(cast->shell->volume, &lines, &cast->placed, cast->rest));
+  cast->left = ((1U << rays) - 1) & tc_bits(place_rays(cast->shell->volume, &lines, &cast->placed));
   cast->first = cast->next;
   cast->next += rays;
 }
 
-static bool next_of_cast(void *user, TcSpans *spans, Packet *packet, bool *more) {
+static bool next_of_cast(void *user, Queue *queue) {
   Cast *cast = user;
-  while (!cast->waiting && cast->next < cast->count) place_cast(cast);
-  *more = cast->waiting != 0;
-  if (!*more) return true;
-  packet->x = cast->first;
-  return begin_waiting(cast->shell, &cast->placed, cast->rest, &cast->waiting, spans, packet);
+  while (!cast->left && cast->next < cast->count) place_cast(cast);
+  if (!cast->left) return false;
+  enqueue(&cast->placed, &cast->left, cast->first, 0, queue);
+  return true;
 }
 
 static void finish_of_cast(void *user, const Packet *packet) {

@@ -71,8 +71,8 @@ void tc_frame_put(TetcastFrame *frame, TetcastChannel channel, int64_t x, int64_
 
 enum {
   TC_TILE = 16,   /* pixels a side, at most, of what a kernel renders at once */
-  TC_PACKET = 8,  /* rays, at most */
-  TC_PACKETS = 2  /* packets that a worker has under way */
+  TC_PACKETS = 2, /* packets that a worker has under way, of eight rays at most; as many wait */
+  TC_PACKET = 16  /* rays of one under way and one that waits */
 };
 
 /* What a worker keeps to itself. */

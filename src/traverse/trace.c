@@ -12,20 +12,18 @@ typedef struct Query {
   TcSpans *spans;
 } Query;
 
-void tc_spans_append(TcSpans *spans, TcSpan span) {
-  if (spans->count == spans->capacity) {
-    const int64_t capacity = spans->capacity ? 2 * spans->capacity : 64;
-    TcSpan *data = tc_allocate(spans->context, capacity, sizeof *data);
-    if (!data) {
-      spans->out_of_memory = true;
-      return;
-    }
-    if (spans->count) memcpy(data, spans->data, (size_t)spans->count * sizeof *data);
-    tc_release(spans->context, spans->data);
-    spans->data = data;
-    spans->capacity = capacity;
+bool tc_spans_grow(TcSpans *spans) {
+  const int64_t capacity = spans->capacity ? 2 * spans->capacity : 64;
+  TcSpan *data = tc_allocate(spans->context, capacity, sizeof *data);
+  if (!data) {
+    spans->out_of_memory = true;
+    return false;
   }
-  spans->data[spans->count++] = span;
+  if (spans->count) memcpy(data, spans->data, (size_t)spans->count * sizeof *data);
+  tc_release(spans->context, spans->data);
+  spans->data = data;
+  spans->capacity = capacity;
+  return true;
 }
 
 /* Whether the ray crosses the triangle of three points, and its edges' values. */
