@@ -123,18 +123,24 @@ static void enqueue(const Placed *placed, unsigned *left, int64_t x, int64_t y, 
   }
 }
 
-/* A shell face that the rays of `mask` cross, or pass at an edge. */
-static __attribute__((noinline)) void face_reached(const Waiting *waiting, uint32_t face, unsigned lanes, const TcPoints p[3]) {
+/* A shell face that the rays of `lanes` cross, those of `ties`, which pass through an edge, perhaps. */
+static __attribute__((noinline)) void face_reached(const Waiting *waiting, uint32_t face, unsigned lanes, unsigned ties, const TcPoints p[3]) {
   TcVec e[3], z, s;
   tc_edges(tc_mask_of(lanes), (const TcPoints *const[]){&p[0], &p[1], &p[2]}, (const TcPoints *const[]){&p[1], &p[2], &p[0]}, e);
-  const unsigned signs[3] = {tc_bits(tc_gt(e[0], tc_set(0))), tc_bits(tc_gt(e[1], tc_set(0))), tc_bits(tc_gt(e[2], tc_set(0)))};
-  unsigned inside = lanes & ((signs[0] & signs[1] & signs[2]) | ~(signs[0] | signs[1] | signs[2]));
+  if (ties) {
+    const unsigned signs[3] = {tc_bits(tc_gt(e[0], tc_set(0))), tc_bits(tc_gt(e[1], tc_set(0))), tc_bits(tc_gt(e[2], tc_set(0)))};
+    lanes &= ~ties | (signs[0] & signs[1] & signs[2]) | ~(signs[0] | signs[1] | signs[2]);
+  }
   tc_crossings(true, p, e, &z, &s);
   double depth[TC_LANES];
   memcpy(depth, &z, sizeof depth);
-  for (; inside; inside &= inside - 1) {
-    const int lane = __builtin_ctz(inside);
-    tc_spans_append(&waiting->spans[lane], (TcSpan){.begin = depth[lane], .end = depth[lane], .id = face});
+  for (; lanes; lanes &= lanes - 1) {
+    const int i = __builtin_ctz(lanes);
+    TcSpan *span = tc_spans_append(&waiting->spans[i]);
+    if (!span) return;
+    span->begin = span->end = depth[i]; /* member by member: what is put together in memory first has to be waited for */
+    span->id = face;
+    span->done = false;
   }
 }
 
@@ -153,17 +159,18 @@ static void face_candidate(void *user, uint32_t i, unsigned lanes) {
       p[k] = tc_project_components(rays, component, tc_set_word(vertex[k]));
     }
     /* An edge has the sign of the difference of two products, rounded or not, if they differ: most lanes need no more. */
-    TcMask left = tc_mask_of(0), right = left;
+    TcMask left = tc_mask_of(0), right = left, decided = tc_all();
     for (int k = 0; k < 3; ++k) {
-      const TcPoints *a = &p[k], *b = &p[(k + 1) % 3];
-      left = tc_or(left, tc_gt(a->x * b->y, a->y * b->x));
-      right = tc_or(right, tc_lt(a->x * b->y, a->y * b->x));
+      const TcVec a = p[k].x * p[(k + 1) % 3].y, b = p[k].y * p[(k + 1) % 3].x;
+      const TcMask above = tc_gt(a, b), below = tc_lt(a, b);
+      left = tc_or(left, above);
+      right = tc_or(right, below);
+      decided = tc_and(decided, tc_or(above, below));
     }
     const unsigned reached = lanes >> j * TC_LANES & tc_bits(tc_and_not(tc_all(), tc_and(left, right)));
-    if (reached) {
-      const TcPoints copy[3] = {p[0], p[1], p[2]};
-      face_reached(&queue->waiting[j], i, reached, copy);
-    }
+    if (!reached) continue;
+    const TcPoints copy[3] = {p[0], p[1], p[2]};
+    face_reached(&queue->waiting[j], i, reached, reached & ~tc_bits(decided), copy);
   }
 }
 

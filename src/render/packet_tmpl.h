@@ -84,13 +84,12 @@ TC_INLINE void add_light(const TetcastVolume *volume, const bool cells, const bo
   }
 }
 
-/* Rays that wait become a packet, whose spans are free for others. */
-static void packet_begin(Waiting *waiting, Packet *packet) {
+/* Rays that wait become a packet, whose spans are free for others. Its walks are as they were: those under way count. */
+static void packet_begin(Waiting *waiting, const TcLights *dark, Packet *packet) {
   TcSpans *spans = waiting->spans;
   waiting->spans = packet->spans;
-  memset(&packet->walks, 0, sizeof packet->walks);
   packet->rays = waiting->rays;
-  tc_lights_begin(&packet->lights);
+  packet->lights = *dark;
   packet->active = 0;
   packet->seen = tc_set(0);
   packet->lanes = waiting->lanes;
@@ -206,14 +205,14 @@ typedef struct Source {
 } Source;
 
 /* *more: whether there was one. False: out of memory. */
-static bool next_packet(const Source *source, Queue *queue, Packet *packet, bool *more) {
+static bool next_packet(const Source *source, const TcLights *dark, Queue *queue, Packet *packet, bool *more) {
   if (queue->next == queue->count) {
     queue->next = queue->count = 0;
     while (queue->count < TC_PACKETS && source->next(source->user, queue)) continue;
     if (!trace(queue)) return false;
   }
   *more = queue->next < queue->count;
-  if (*more) packet_begin(&queue->waiting[queue->next++], packet);
+  if (*more) packet_begin(&queue->waiting[queue->next++], dark, packet);
   return true;
 }
 
@@ -229,6 +228,8 @@ static bool run_packets(const TcShell *shell, const TcPieces *pieces, TcWorker *
   Packet packets[TC_PACKETS];
   bool under_way[TC_PACKETS] = {false};
   Queue queue = {.shell = shell};
+  TcLights dark;
+  tc_lights_begin(&dark);
   memset(packets, 0, sizeof packets);
   for (int i = 0; i < TC_PACKETS; ++i) {
     packets[i].spans = worker->spans + i * TC_PACKET;
@@ -242,7 +243,7 @@ static bool run_packets(const TcShell *shell, const TcPieces *pieces, TcWorker *
           end_lights(pieces, &packets[i].lights);
           source->finish(source->user, &packets[i]);
         }
-        if (!next_packet(source, &queue, &packets[i], &under_way[i])) return false;
+        if (!next_packet(source, &dark, &queue, &packets[i], &under_way[i])) return false;
         if (!under_way[i]) break;
       }
       any = any || under_way[i];
@@ -263,26 +264,24 @@ typedef struct Tile {
   Placed placed; /* rays of which those of `left` remain: those of one kz go together */
   unsigned left;
   int64_t left_x, left_y;
-  double sum[TC_TILE * TC_TILE][5]; /* red, green, blue, alpha, bound of their error */
+  double sum[5][TC_TILE][TC_TILE]; /* red, green, blue, alpha, bound of their error */
 } Tile;
 
 /* Places the rays of the next packet of pixels. */
 static void place_next(Tile *tile) {
   const TcJob *job = tile->job;
-  double u[TC_LANES], v[TC_LANES];
-  unsigned lanes = 0;
-  for (int lane = 0; lane < TC_LANES; ++lane) {
-    const int64_t px = tile->x + lane % PACKET_X, py = tile->y + lane / PACKET_X;
-    if (px < tile->x1 && py < tile->y1) lanes |= 1U << lane;
-    u[lane] = 2 * ((double)(px * job->samples_x + tile->sample % job->samples_x) + 0.5) / (double)(job->width * job->samples_x) - 1;
-    v[lane] = 1 - 2 * ((double)(py * job->samples_y + tile->sample / job->samples_x) + 0.5) / (double)(job->height * job->samples_y);
+  TcVec x, y;
+  for (int i = 0; i < TC_LANES; ++i) {
+    x[i] = i % PACKET_X;
+    y[i] = i / PACKET_X;
   }
-  TcVec us, vs;
-  memcpy(&us, u, sizeof us);
-  memcpy(&vs, v, sizeof vs);
+  const TcMask inside = tc_and(tc_lt(x, tc_set((double)(tile->x1 - tile->x))), tc_lt(y, tc_set((double)(tile->y1 - tile->y))));
+  const TcVec column = (x + (double)tile->x) * job->samples_x + tile->sample % job->samples_x;
+  const TcVec row = (y + (double)tile->y) * job->samples_y + tile->sample / job->samples_x;
   Lines lines;
-  view_lines(&job->view, us, vs, &lines);
-  tile->left = lanes & tc_bits(place_rays(job->shell->volume, &lines, &tile->placed));
+  view_lines(&job->view, 2 * (column + 0.5) / (double)(job->width * job->samples_x) - 1,
+             1 - 2 * (row + 0.5) / (double)(job->height * job->samples_y), &lines);
+  tile->left = tc_bits(tc_and(inside, place_rays(job->shell->volume, &lines, &tile->placed)));
   tile->left_x = tile->x;
   tile->left_y = tile->y;
   if (++tile->sample < job->samples_x * job->samples_y) return;
@@ -303,14 +302,18 @@ static bool next_of_tile(void *user, Queue *queue) {
 
 static void finish_of_tile(void *user, const Packet *packet) {
   Tile *tile = user;
-  const TcVec alpha = packet->lights.alpha;
-  for (unsigned left = packet->lanes; left; left &= left - 1) {
+  const TcLights *lights = &packet->lights;
+  const TcTolerance *tolerance = &tile->worker->tolerance;
+  TcVec bound = lights->alpha * tc_tolerance_bound(tolerance, &(TcLight){.stopped = false}, 1, packet->steps);
+  for (unsigned left = packet->stopped; left; left &= left - 1) {
     const int i = __builtin_ctz(left);
-    double *sum = tile->sum[(packet->y + i / PACKET_X - tile->y0) * TC_TILE + packet->x + i % PACKET_X - tile->x0];
-    const TcLight light = {.depth = packet->lights.depth[i], .stopped = packet->stopped >> i & 1};
-    for (int k = 0; k < 3; ++k) sum[k] += packet->lights.color[k][i];
-    sum[3] += alpha[i];
-    sum[4] += tc_tolerance_bound(&tile->worker->tolerance, &light, alpha[i], packet->steps);
+    bound[i] = tc_tolerance_bound(tolerance, &(TcLight){.depth = lights->depth[i], .stopped = true}, lights->alpha[i], packet->steps);
+  }
+  const TcVec *of_lanes[5] = {&lights->color[0], &lights->color[1], &lights->color[2], &lights->alpha, &bound};
+  for (int k = 0; k < 5; ++k) {
+    double (*sum)[TC_TILE] = &tile->sum[k][packet->y - tile->y0];
+    const TcVec value = tc_select(tc_mask_of(packet->lanes), *of_lanes[k], tc_set(0));
+    for (int i = 0; i < TC_LANES; ++i) sum[i / PACKET_X][packet->x - tile->x0 + i % PACKET_X] += value[i];
   }
 }
 
@@ -318,9 +321,9 @@ static void store_tile(const Tile *tile) {
   const double samples = tile->job->samples_x * tile->job->samples_y;
   for (int64_t y = tile->y0; y < tile->y1; ++y) {
     for (int64_t x = tile->x0; x < tile->x1; ++x) {
-      const double *sum = tile->sum[(y - tile->y0) * TC_TILE + x - tile->x0];
-      const double rgba[4] = {sum[0] / samples, sum[1] / samples, sum[2] / samples, sum[3] / samples};
-      const double bound = tc_frame_store(tile->job->frame, x, y, rgba, sum[4] / samples);
+      double mean[5];
+      for (int k = 0; k < 5; ++k) mean[k] = tile->sum[k][y - tile->y0][x - tile->x0] / samples;
+      const double bound = tc_frame_store(tile->job->frame, x, y, mean, mean[4]);
       if (!(bound <= tile->worker->error)) tile->worker->error = bound;
     }
   }

@@ -86,13 +86,11 @@ static void intersect_function(const struct RTCIntersectFunctionNArguments *argu
     for (uint32_t i = begin; i < end && arguments->valid[0]; ++i) query->candidate(query->query, i);
     return;
   }
-  /* A ray's id is its lane, however many of a packet Embree hands on together. It is the eleventh of a packet's arrays: what
-   * RTCRayN_id() says, which is there in C++ only. */
+  /* A ray's id is its lane's bit, however many of a packet Embree hands on together; `valid` is 0 or −1. It is the eleventh of a packet's
+   * arrays: what RTCRayN_id() says, which is there in C++ only. */
   const unsigned *id = (const unsigned *)(const void *)arguments->rayhit + 10 * arguments->N;
   unsigned lanes = 0;
-  for (unsigned i = 0; i < arguments->N; ++i) {
-    if (arguments->valid[i]) lanes |= 1U << id[i];
-  }
+  for (unsigned i = 0; i < arguments->N; ++i) lanes |= (unsigned)arguments->valid[i] & id[i];
   for (uint32_t i = begin; i < end; ++i) query->packet_candidate(query->query, i, lanes);
 }
 
@@ -219,7 +217,7 @@ void tc_embree_query(const TcEmbree *embree, const double from_center[3], const 
       (rays).ray.org_x[i] = start[0], (rays).ray.org_y[i] = start[1], (rays).ray.org_z[i] = start[2];                \
       (rays).ray.dir_x[i] = (float)d[0], (rays).ray.dir_y[i] = (float)d[1], (rays).ray.dir_z[i] = (float)d[2];       \
       (rays).ray.tnear[i] = 0, (rays).ray.tfar[i] = 4, (rays).ray.time[i] = 0;                                       \
-      (rays).ray.mask[i] = UINT32_MAX, (rays).ray.id[i] = (unsigned)i, (rays).ray.flags[i] = 0;                      \
+      (rays).ray.mask[i] = UINT32_MAX, (rays).ray.id[i] = 1U << i,     (rays).ray.flags[i] = 0;                      \
       (rays).hit.geomID[i] = (rays).hit.primID[i] = (rays).hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;               \
       valid[i] = lanes >> i & 1 ? -1 : 0;                                                                            \
     }                                                                                                                \

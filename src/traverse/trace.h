@@ -26,8 +26,9 @@ bool tc_spans_grow(TcSpans *spans);
 void tc_spans_sort(TcSpans *spans);
 void tc_spans_clear(TcSpans *spans);
 
-static inline void tc_spans_append(TcSpans *spans, TcSpan span) {
-  if (spans->count < spans->capacity || tc_spans_grow(spans)) spans->data[spans->count++] = span;
+/* One more, for the caller to fill; NULL: out of memory. */
+static inline TcSpan *tc_spans_append(TcSpans *spans) {
+  return spans->count < spans->capacity || tc_spans_grow(spans) ? &spans->data[spans->count++] : NULL;
 }
 
 #endif
