@@ -282,19 +282,20 @@ static void place_next(Tile *tile) {
   view_lines(&job->view, 2 * (column + 0.5) / (double)(job->width * job->samples_x) - 1,
              1 - 2 * (row + 0.5) / (double)(job->height * job->samples_y), &lines);
   tile->left = tc_bits(tc_and(inside, place_rays(job->shell->volume, &lines, &tile->placed)));
+  for (int64_t py = tile->y; py < tile->y + PACKET_Y; ++py) tc_frame_expect(job->frame, tile->x, py);
   tile->left_x = tile->x;
   tile->left_y = tile->y;
   if (++tile->sample < job->samples_x * job->samples_y) return;
   tile->sample = 0;
+  tile->y += PACKET_Y; /* so that two packets in turn fill a square, or nearly */
+  if (tile->y < tile->y1) return;
+  tile->y = tile->y0;
   tile->x += PACKET_X;
-  if (tile->x < tile->x1) return;
-  tile->x = tile->x0;
-  tile->y += PACKET_Y;
 }
 
 static bool next_of_tile(void *user, Queue *queue) {
   Tile *tile = user;
-  while (!tile->left && tile->y < tile->y1) place_next(tile);
+  while (!tile->left && tile->x < tile->x1) place_next(tile);
   if (!tile->left) return false;
   enqueue(&tile->placed, &tile->left, tile->left_x, tile->left_y, queue);
   return true;

@@ -131,7 +131,7 @@ TetcastStatus tc_embree_create(TetcastContext *context, int64_t count, const dou
   }
   rtcSetDeviceMemoryMonitorFunction(embree->device, memory_monitor, embree);
   embree->scene = rtcNewScene(embree->device);
-  rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
+  rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST);
   RTCGeometry geometry = rtcNewGeometry(embree->device, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, (embree->count + PAIR - 1) / PAIR);
   rtcSetGeometryUserData(geometry, embree);
