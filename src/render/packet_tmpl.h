@@ -217,7 +217,10 @@ static bool next_packet(const Source *source, const TcLights *dark, Queue *queue
 }
 
 static void end_lights(const TcPieces *pieces, TcLights *lights) {
-  tc_lights_end_block(!pieces->one_color, lights);
+  TcLights last = *lights; /* of which only this is needed */
+  tc_lights_end_block(!pieces->one_color, &last);
+  lights->depth = last.depth;
+  for (int k = 0; k < 3; ++k) lights->color[k] = last.color[k];
   lights->alpha = tc_segments_constant(tc_all(), lights->depth).w0;
   for (int k = 0; pieces->one_color && k < 3; ++k) lights->color[k] = lights->alpha * pieces->largest[k];
 }
@@ -318,12 +321,14 @@ static void finish_of_tile(void *user, const Packet *packet) {
   }
 }
 
-static void store_tile(const Tile *tile) {
+static void store_tile(Tile *tile) {
   const double samples = tile->job->samples_x * tile->job->samples_y;
+  double *sum = tile->sum[0][0];
+  for (size_t i = 0; samples > 1 && i < sizeof tile->sum / sizeof *sum; ++i) sum[i] /= samples;
   for (int64_t y = tile->y0; y < tile->y1; ++y) {
     for (int64_t x = tile->x0; x < tile->x1; ++x) {
       double mean[5];
-      for (int k = 0; k < 5; ++k) mean[k] = tile->sum[k][y - tile->y0][x - tile->x0] / samples;
+      for (int k = 0; k < 5; ++k) mean[k] = tile->sum[k][y - tile->y0][x - tile->x0];
       const double bound = tc_frame_store(tile->job->frame, x, y, mean, mean[4]);
       if (!(bound <= tile->worker->error)) tile->worker->error = bound;
     }
