@@ -456,9 +456,8 @@ static void single_end(const TcShell *shell, const TcPieces *pieces, TcWorker *w
     packet->steps = single->steps;
     const TcVec bound = tolerance->single_fixed + tolerance->per_variation * tcf_half(single->variation, h) +
                         tolerance->per_shift * tcf_half(single->shift, h);
-    memcpy(packet->single, &bound, sizeof bound);
     again = met & (again | ~tc_bits(tc_le(bound, tc_set(tolerance->single_most))));
-    for (unsigned left = all & (again | ~met); left; left &= left - 1) packet->single[__builtin_ctz(left)] = 0;
+    packet->single = tc_select(tc_mask_of(met & ~again), bound, tc_set(0));
     if (again) walk_again(shell, pieces, worker, again, packet);
   }
 }

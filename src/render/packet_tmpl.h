@@ -6,12 +6,7 @@
 #include "render/packet_rays.h"
 #include "traverse/walk.h"
 
-/* for each packet i of those under way; unrolled, so that their instructions mix */
-#if defined(__clang__)
-#define TC_UNROLLED _Pragma("clang loop unroll(full)")
-#else
-#define TC_UNROLLED _Pragma("GCC unroll 4")
-#endif
+/* for each packet i of those under way */
 #define TC_EACH_PACKET TC_UNROLLED for (int i = 0; i < TC_PACKETS; ++i)
 
 enum {
@@ -35,7 +30,7 @@ typedef struct Packet {
   uint32_t face[TC_LANES];
   TcSpans *spans;
   int64_t x, y; /* first pixel */
-  double single[TC_LANES]; /* bound of what is off by single precision */
+  TcVec single; /* bound of what is off by single precision */
 } Packet;
 
 /* The next face at which a lane sets out, or false. next: where to look from. */
@@ -90,25 +85,25 @@ TC_INLINE void add_light(const TetcastVolume *volume, const bool cells, const bo
   }
 }
 
-/* The rays along kz among those placed; false: out of memory. */
-static bool packet_begin(const TcShell *shell, const TcRays *placed, const TcVec rest[3], int kz, unsigned lanes, TcSpans *spans,
-                         Packet *packet) {
-  memset(&packet->walks, 0, sizeof packet->walks);
-  turn_rays(placed, rest, kz, &packet->rays);
-  tc_lights_begin(&packet->lights);
+/* Rays that wait become a packet, whose spans are free for others. Its walks are as they were: those under way count. */
+static void packet_begin(Waiting *waiting, const TcLights *dark, Packet *packet) {
+  TcSpans *spans = waiting->spans;
+  waiting->spans = packet->spans;
+  packet->rays = waiting->rays;
+  packet->lights = *dark;
   packet->active = 0;
   packet->seen = tc_set(0);
-  packet->lanes = lanes;
+  packet->lanes = waiting->lanes;
   packet->ended = packet->starting = packet->stopped = 0;
-  memset(packet->single, 0, sizeof packet->single);
+  packet->single = tc_set(0);
   packet->steps = 0;
   packet->spans = spans;
-  if (!trace(shell, &packet->rays, lanes, spans)) return false;
+  packet->x = waiting->x;
+  packet->y = waiting->y;
   for (int i = 0; i < TC_LANES; ++i) {
     packet->next[i] = 0;
-    if (lanes >> i & 1 && next_start(&spans[i], &packet->next[i], &packet->face[i])) packet->starting |= 1U << i;
+    if (packet->lanes >> i & 1 && next_start(&spans[i], &packet->next[i], &packet->face[i])) packet->starting |= 1U << i;
   }
-  return true;
 }
 
 static bool packet_runs(const Packet *packet) { return packet->starting || packet->active; }
@@ -208,23 +203,28 @@ static Advance *advance_for(const TetcastVolume *volume, const TcPieces *pieces)
 
 /* Where packets come from, and what becomes of their light. */
 typedef struct Source {
-  bool (*next)(void *user, TcSpans *spans, Packet *packet, bool *more); /* *more: whether there was one. False: out of memory */
+  bool (*next)(void *user, Queue *queue); /* puts the rays of a packet into the queue; false: there are no more */
   void (*finish)(void *user, const Packet *packet);
   void *user;
 } Source;
 
-/* The rays of one kz among those that wait become a packet; false: out of memory. */
-static bool begin_waiting(const TcShell *shell, const TcRays *placed, const TcVec rest[3], unsigned *waiting, TcSpans *spans,
-                          Packet *packet) {
-  unsigned along = 0;
-  int kz = -1;
-  while (!along) along = *waiting & tc_bits(lanes_along(placed->direction, ++kz));
-  *waiting &= ~along;
-  return packet_begin(shell, placed, rest, kz, along, spans, packet);
+/* *more: whether there was one. False: out of memory. */
+static bool next_packet(const Source *source, const TcLights *dark, Queue *queue, Packet *packet, bool *more) {
+  if (queue->next == queue->count) {
+    queue->next = queue->count = 0;
+    while (queue->count < TC_PACKETS && source->next(source->user, queue)) continue;
+    if (!trace(queue)) return false;
+  }
+  *more = queue->next < queue->count;
+  if (*more) packet_begin(&queue->waiting[queue->next++], dark, packet);
+  return true;
 }
 
 static void end_lights(const TcPieces *pieces, TcLights *lights) {
-  tc_lights_end_block(!pieces->one_color, lights);
+  TcLights last = *lights; /* of which only this is needed */
+  tc_lights_end_block(!pieces->one_color, &last);
+  lights->depth = last.depth;
+  for (int k = 0; k < 3; ++k) lights->color[k] = last.color[k];
   lights->alpha = tc_segments_constant(tc_all(), lights->depth).w0;
   for (int k = 0; pieces->one_color && k < 3; ++k) lights->color[k] = lights->alpha * pieces->largest[k];
 }
@@ -239,7 +239,12 @@ static bool run_packets(const TcShell *shell, const TcPieces *pieces, TcWorker *
 #endif
   Packet packets[MOST];
   bool under_way[MOST] = {false};
+  Queue queue = {.shell = shell};
+  TcLights dark;
+  tc_lights_begin(&dark);
   memset(packets, 0, sizeof packets);
+  for (int i = 0; i < MOST; ++i) packets[i].spans = worker->spans + i * TC_PACKET;
+  for (int i = 0; i < TC_PACKETS; ++i) queue.waiting[i].spans = worker->spans + (MOST + i) * TC_PACKET;
   for (;;) {
     bool any = false;
     for (int i = 0; i < count; ++i) {
@@ -248,7 +253,7 @@ static bool run_packets(const TcShell *shell, const TcPieces *pieces, TcWorker *
           end_lights(pieces, &packets[i].lights);
           source->finish(source->user, &packets[i]);
         }
-        if (!source->next(source->user, worker->spans + i * TC_PACKET, &packets[i], &under_way[i])) return false;
+        if (!next_packet(source, &dark, &queue, &packets[i], &under_way[i])) return false;
         if (!under_way[i]) break;
       }
       any = any || under_way[i];
@@ -266,70 +271,73 @@ typedef struct Tile {
   int64_t x0, y0, x1, y1;
   int64_t x, y; /* of the packet whose rays come next */
   int sample;
-  TcRays placed; /* rays that wait: those of one kz go together */
-  TcVec rest[3];
-  unsigned waiting;
-  int64_t waiting_x, waiting_y;
-  double sum[TC_TILE * TC_TILE][5]; /* red, green, blue, alpha, bound of their error */
+  Placed placed; /* rays of which those of `left` remain: those of one kz go together */
+  unsigned left;
+  int64_t left_x, left_y;
+  double sum[5][TC_TILE][TC_TILE]; /* red, green, blue, alpha, bound of their error */
 } Tile;
 
 /* Places the rays of the next packet of pixels. */
 static void place_next(Tile *tile) {
   const TcJob *job = tile->job;
-  double u[TC_LANES], v[TC_LANES];
-  unsigned lanes = 0;
-  for (int lane = 0; lane < TC_LANES; ++lane) {
-    const int64_t px = tile->x + lane % PACKET_X, py = tile->y + lane / PACKET_X;
-    if (px < tile->x1 && py < tile->y1) lanes |= 1U << lane;
-    u[lane] = 2 * ((double)(px * job->samples_x + tile->sample % job->samples_x) + 0.5) / (double)(job->width * job->samples_x) - 1;
-    v[lane] = 1 - 2 * ((double)(py * job->samples_y + tile->sample / job->samples_x) + 0.5) / (double)(job->height * job->samples_y);
+  TcVec x, y;
+  for (int i = 0; i < TC_LANES; ++i) {
+    x[i] = i % PACKET_X;
+    y[i] = i / PACKET_X;
   }
-  TcVec us, vs;
-  memcpy(&us, u, sizeof us);
-  memcpy(&vs, v, sizeof vs);
+  const TcMask inside = tc_and(tc_lt(x, tc_set((double)(tile->x1 - tile->x))), tc_lt(y, tc_set((double)(tile->y1 - tile->y))));
+  const TcVec column = (x + (double)tile->x) * job->samples_x + tile->sample % job->samples_x;
+  const TcVec row = (y + (double)tile->y) * job->samples_y + tile->sample / job->samples_x;
   Lines lines;
-  view_lines(&job->view, us, vs, &lines);
-  tile->waiting = lanes & tc_bits(place_rays(job->shell->volume, &lines, &tile->placed, tile->rest));
-  tile->waiting_x = tile->x;
-  tile->waiting_y = tile->y;
+  view_lines(&job->view, 2 * (column + 0.5) / (double)(job->width * job->samples_x) - 1,
+             1 - 2 * (row + 0.5) / (double)(job->height * job->samples_y), &lines);
+  tile->left = tc_bits(tc_and(inside, place_rays(job->shell->volume, &lines, &tile->placed)));
+  for (int64_t py = tile->y; py < tile->y + PACKET_Y; ++py) tc_frame_expect(job->frame, tile->x, py);
+  tile->left_x = tile->x;
+  tile->left_y = tile->y;
   if (++tile->sample < job->samples_x * job->samples_y) return;
   tile->sample = 0;
+  tile->y += PACKET_Y; /* so that two packets in turn fill a square, or nearly */
+  if (tile->y < tile->y1) return;
+  tile->y = tile->y0;
   tile->x += PACKET_X;
-  if (tile->x < tile->x1) return;
-  tile->x = tile->x0;
-  tile->y += PACKET_Y;
 }
 
-static bool next_of_tile(void *user, TcSpans *spans, Packet *packet, bool *more) {
+static bool next_of_tile(void *user, Queue *queue) {
   Tile *tile = user;
-  while (!tile->waiting && tile->y < tile->y1) place_next(tile);
-  *more = tile->waiting != 0;
-  if (!*more) return true;
-  packet->x = tile->waiting_x;
-  packet->y = tile->waiting_y;
-  return begin_waiting(tile->job->shell, &tile->placed, tile->rest, &tile->waiting, spans, packet);
+  while (!tile->left && tile->x < tile->x1) place_next(tile);
+  if (!tile->left) return false;
+  enqueue(&tile->placed, &tile->left, tile->left_x, tile->left_y, queue);
+  return true;
 }
 
 static void finish_of_tile(void *user, const Packet *packet) {
   Tile *tile = user;
-  const TcVec alpha = packet->lights.alpha;
-  for (unsigned left = packet->lanes; left; left &= left - 1) {
+  const TcLights *lights = &packet->lights;
+  const TcTolerance *tolerance = &tile->worker->tolerance;
+  TcVec bound = lights->alpha * tc_tolerance_bound(tolerance, &(TcLight){.stopped = false}, 1, packet->steps);
+  for (unsigned left = packet->stopped; left; left &= left - 1) {
     const int i = __builtin_ctz(left);
-    double *sum = tile->sum[(packet->y + i / PACKET_X - tile->y0) * TC_TILE + packet->x + i % PACKET_X - tile->x0];
-    const TcLight light = {.depth = packet->lights.depth[i], .stopped = packet->stopped >> i & 1};
-    for (int k = 0; k < 3; ++k) sum[k] += packet->lights.color[k][i];
-    sum[3] += alpha[i];
-    sum[4] += tc_tolerance_bound(&tile->worker->tolerance, &light, alpha[i], packet->steps) + packet->single[i];
+    bound[i] = tc_tolerance_bound(tolerance, &(TcLight){.depth = lights->depth[i], .stopped = true}, lights->alpha[i], packet->steps);
+  }
+  bound += packet->single;
+  const TcVec *of_lanes[5] = {&lights->color[0], &lights->color[1], &lights->color[2], &lights->alpha, &bound};
+  for (int k = 0; k < 5; ++k) {
+    double (*sum)[TC_TILE] = &tile->sum[k][packet->y - tile->y0];
+    const TcVec value = tc_select(tc_mask_of(packet->lanes), *of_lanes[k], tc_set(0));
+    for (int i = 0; i < TC_LANES; ++i) sum[i / PACKET_X][packet->x - tile->x0 + i % PACKET_X] += value[i];
   }
 }
 
-static void store_tile(const Tile *tile) {
+static void store_tile(Tile *tile) {
   const double samples = tile->job->samples_x * tile->job->samples_y;
+  double *sum = tile->sum[0][0];
+  for (size_t i = 0; samples > 1 && i < sizeof tile->sum / sizeof *sum; ++i) sum[i] /= samples;
   for (int64_t y = tile->y0; y < tile->y1; ++y) {
     for (int64_t x = tile->x0; x < tile->x1; ++x) {
-      const double *sum = tile->sum[(y - tile->y0) * TC_TILE + x - tile->x0];
-      const double rgba[4] = {sum[0] / samples, sum[1] / samples, sum[2] / samples, sum[3] / samples};
-      const double bound = tc_frame_store(tile->job->frame, x, y, rgba, sum[4] / samples);
+      double mean[5];
+      for (int k = 0; k < 5; ++k) mean[k] = tile->sum[k][y - tile->y0][x - tile->x0];
+      const double bound = tc_frame_store(tile->job->frame, x, y, mean, mean[4]);
       if (!(bound <= tile->worker->error)) tile->worker->error = bound;
     }
   }
@@ -351,9 +359,8 @@ typedef struct Cast {
   TcLight *light;
   int count, next; /* rays, and the first of those that have not been placed */
   int first;       /* of those placed */
-  TcRays placed;
-  TcVec rest[3];
-  unsigned waiting;
+  Placed placed;
+  unsigned left;   /* of those */
 } Cast;
 
 static void place_cast(Cast *cast) {
@@ -367,18 +374,17 @@ static void place_cast(Cast *cast) {
       lines.direction[k][i] = line->direction[k];
     }
   }
-  cast->waiting = ((1U << rays) - 1) & tc_bits(place_rays(cast->shell->volume, &lines, &cast->placed, cast->rest));
+  cast->left = ((1U << rays) - 1) & tc_bits(place_rays(cast->shell->volume, &lines, &cast->placed));
   cast->first = cast->next;
   cast->next += rays;
 }
 
-static bool next_of_cast(void *user, TcSpans *spans, Packet *packet, bool *more) {
+static bool next_of_cast(void *user, Queue *queue) {
   Cast *cast = user;
-  while (!cast->waiting && cast->next < cast->count) place_cast(cast);
-  *more = cast->waiting != 0;
-  if (!*more) return true;
-  packet->x = cast->first;
-  return begin_waiting(cast->shell, &cast->placed, cast->rest, &cast->waiting, spans, packet);
+  while (!cast->left && cast->next < cast->count) place_cast(cast);
+  if (!cast->left) return false;
+  enqueue(&cast->placed, &cast->left, cast->first, 0, queue);
+  return true;
 }
 
 static void finish_of_cast(void *user, const Packet *packet) {

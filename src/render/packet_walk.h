@@ -12,7 +12,6 @@
 typedef struct TcRays {
   TcVec origin[3]; /* along kx, ky, kz */
   TcVec shear_x, shear_y, inverse_z, rest_x, rest_y, rest_z, near;
-  TcVec from_center[3], direction[3];
   int kz;
 } TcRays;
 
@@ -40,6 +39,18 @@ TC_INLINE void tc_load_vertices(const TetcastVolume *volume, const bool wide, in
     for (int i = 0; i < TC_LANES; ++i) memcpy(&record[i], (const float *)volume->vertices + 4 * (size_t)id[i], sizeof record[i]);
     tc_transpose_narrow(record, kz, component);
   }
+}
+
+TC_INLINE TcRecord tc_load_record(const TetcastVolume *volume, uint32_t id) {
+  TcRecord record;
+  TcNarrow narrow;
+  if (volume->vertices_are_double) {
+    memcpy(&record, (const double *)volume->vertices + 4 * (size_t)id, sizeof record);
+  } else {
+    memcpy(&narrow, (const float *)volume->vertices + 4 * (size_t)id, sizeof narrow);
+    record = __builtin_convertvector(narrow, TcRecord);
+  }
+  return record;
 }
 
 TC_INLINE TcPoints tc_project_components(const TcRays *rays, const TcVec component[4], TcWord id) {

@@ -69,14 +69,18 @@ TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *d
 void tc_frame_destroy(TetcastFrame *frame);
 /* `error` is a bound on that of rgba. Returns one on that of the pixel, rounding to its type included. */
 double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, const double rgba[4], double error);
+/* A pixel is going to be stored. */
+static inline void tc_frame_expect(const TetcastFrame *frame, int64_t x, int64_t y) {
+  if (y < frame->height) __builtin_prefetch((const char *)frame->pixels + y * frame->row_stride + x * 4 * (int64_t)tc_type_size(frame->type), 1);
+}
 /* Stores a pixel's values of a channel, if the frame has it. */
 void tc_frame_put(TetcastFrame *frame, TetcastChannel channel, int64_t x, int64_t y, const double *values);
 
 enum {
   TC_TILE = 16,   /* pixels a side, at most, of what a kernel renders at once */
   TC_PACKET = 8,  /* rays, at most */
-  TC_PACKETS = 2, /* packets that a worker has under way; twice as many, in pairs, in single precision */
-  TC_RAYS = 2 * TC_PACKETS * TC_PACKET
+  TC_PACKETS = 2, /* packets that a worker has under way; in single precision pairs of them */
+  TC_RAYS = 3 * TC_PACKETS * TC_PACKET /* with those that wait */
 };
 
 /* What a worker keeps to itself. */

@@ -86,13 +86,11 @@ static void intersect_function(const struct RTCIntersectFunctionNArguments *argu
     for (uint32_t i = begin; i < end && arguments->valid[0]; ++i) query->candidate(query->query, i);
     return;
   }
-  /* A ray's id is its lane, however many of a packet Embree hands on together. It is the eleventh of a packet's arrays: what
-   * RTCRayN_id() says, which is there in C++ only. */
+  /* A ray's id is its lane's bit, however many of a packet Embree hands on together; `valid` is 0 or −1. It is the eleventh of a packet's
+   * arrays: what RTCRayN_id() says, which is there in C++ only. */
   const unsigned *id = (const unsigned *)(const void *)arguments->rayhit + 10 * arguments->N;
   unsigned lanes = 0;
-  for (unsigned i = 0; i < arguments->N; ++i) {
-    if (arguments->valid[i]) lanes |= 1U << id[i];
-  }
+  for (unsigned i = 0; i < arguments->N; ++i) lanes |= (unsigned)arguments->valid[i] & id[i];
   for (uint32_t i = begin; i < end; ++i) query->packet_candidate(query->query, i, lanes);
 }
 
@@ -133,7 +131,7 @@ TetcastStatus tc_embree_create(TetcastContext *context, int64_t count, const dou
   }
   rtcSetDeviceMemoryMonitorFunction(embree->device, memory_monitor, embree);
   embree->scene = rtcNewScene(embree->device);
-  rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
+  rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST);
   RTCGeometry geometry = rtcNewGeometry(embree->device, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, (embree->count + PAIR - 1) / PAIR);
   rtcSetGeometryUserData(geometry, embree);
@@ -208,32 +206,35 @@ void tc_embree_query(const TcEmbree *embree, const double from_center[3], const 
   INTERSECT(query, false, rtcIntersect1(embree->scene, RAYS(query, &ray)));
 }
 
-/* Ray i of a packet of either width. */
-#define FILL(rays, i)                                                                                                          \
-  do {                                                                                                                         \
-    const double p[3] = {from_center[i], from_center[width + (i)], from_center[2 * width + (i)]};                              \
-    const double d[3] = {direction[i], direction[width + (i)], direction[2 * width + (i)]};                                    \
-    float start[3];                                                                                                            \
-    start_of(embree, p, d, start);                                                                                             \
-    (rays).ray.org_x[i] = start[0], (rays).ray.org_y[i] = start[1], (rays).ray.org_z[i] = start[2];                            \
-    (rays).ray.dir_x[i] = (float)d[0], (rays).ray.dir_y[i] = (float)d[1], (rays).ray.dir_z[i] = (float)d[2];                   \
-    (rays).ray.tnear[i] = 0, (rays).ray.tfar[i] = 4, (rays).ray.time[i] = 0;                                                   \
-    (rays).ray.mask[i] = UINT32_MAX, (rays).ray.id[i] = (unsigned)(i), (rays).ray.flags[i] = 0;                                \
-    (rays).hit.geomID[i] = (rays).hit.primID[i] = (rays).hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;                           \
-    valid[i] = lanes >> (i) & 1 ? -1 : 0;                                                                                      \
+/* Sets up rays of a packet of either width. */
+#define FILL(rays)                                                                                                   \
+  do {                                                                                                               \
+    for (int i = 0; i < width; ++i) {                                                                                \
+      const double p[3] = {from_center[i], from_center[width + i], from_center[2 * width + i]};                      \
+      const double d[3] = {direction[i], direction[width + i], direction[2 * width + i]};                            \
+      float start[3];                                                                                                \
+      start_of(embree, p, d, start);                                                                                 \
+      (rays).ray.org_x[i] = start[0], (rays).ray.org_y[i] = start[1], (rays).ray.org_z[i] = start[2];                \
+      (rays).ray.dir_x[i] = (float)d[0], (rays).ray.dir_y[i] = (float)d[1], (rays).ray.dir_z[i] = (float)d[2];       \
+      (rays).ray.tnear[i] = 0, (rays).ray.tfar[i] = 4, (rays).ray.time[i] = 0;                                       \
+      (rays).ray.mask[i] = UINT32_MAX, (rays).ray.id[i] = 1U << i,     (rays).ray.flags[i] = 0;                      \
+      (rays).hit.geomID[i] = (rays).hit.primID[i] = (rays).hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;               \
+      valid[i] = lanes >> i & 1 ? -1 : 0;                                                                            \
+    }                                                                                                                \
   } while (0)
 
+/* Where the processor has no such packets, Embree takes them apart. */
 void tc_embree_query_packet(const TcEmbree *embree, int width, unsigned lanes, const double *from_center, const double *direction,
                             TcPacketCandidateFunction *candidate, void *user) {
   Query query = {.packet_candidate = candidate, .query = user};
-  _Alignas(64) int valid[8];
-  if (width == 8) {
-    struct RTCRayHit8 rays;
-    for (int i = 0; i < 8; ++i) FILL(rays, i);
-    INTERSECT(query, true, rtcIntersect8(valid, embree->scene, RAYS(query, &rays)));
+  _Alignas(64) int valid[16];
+  if (width == 16) {
+    struct RTCRayHit16 rays;
+    FILL(rays);
+    INTERSECT(query, true, rtcIntersect16(valid, embree->scene, RAYS(query, &rays)));
   } else {
-    struct RTCRayHit4 rays;
-    for (int i = 0; i < 4; ++i) FILL(rays, i);
-    INTERSECT(query, true, rtcIntersect4(valid, embree->scene, RAYS(query, &rays)));
+    struct RTCRayHit8 rays;
+    FILL(rays);
+    INTERSECT(query, true, rtcIntersect8(valid, embree->scene, RAYS(query, &rays)));
   }
 }

@@ -23,7 +23,7 @@ size_t tc_embree_bytes(const TcEmbree *embree);
 void tc_embree_query(const TcEmbree *embree, const double from_center[3], const double direction[3], TcCandidateFunction *candidate,
                      void *query);
 
-/* The same for `width` (4 or 8) lines at once, those of the bits of `lanes`: the components of from_center and direction are
+/* The same for `width` (8 or 16) lines at once, those of the bits of `lanes`: the components of from_center and direction are
  * [3][width]. Called for every primitive that any may meet, with the bits of those. */
 typedef void TcPacketCandidateFunction(void *query, uint32_t i, unsigned lanes);
 void tc_embree_query_packet(const TcEmbree *embree, int width, unsigned lanes, const double *from_center, const double *direction,

@@ -12,20 +12,18 @@ typedef struct Query {
   TcSpans *spans;
 } Query;
 
-void tc_spans_append(TcSpans *spans, TcSpan span) {
-  if (spans->count == spans->capacity) {
-    const int64_t capacity = spans->capacity ? 2 * spans->capacity : 64;
-    TcSpan *data = tc_allocate(spans->context, capacity, sizeof *data);
-    if (!data) {
-      spans->out_of_memory = true;
-      return;
-    }
-    if (spans->count) memcpy(data, spans->data, (size_t)spans->count * sizeof *data);
-    tc_release(spans->context, spans->data);
-    spans->data = data;
-    spans->capacity = capacity;
+bool tc_spans_grow(TcSpans *spans) {
+  const int64_t capacity = spans->capacity ? 2 * spans->capacity : 64;
+  TcSpan *data = tc_allocate(spans->context, capacity, sizeof *data);
+  if (!data) {
+    spans->out_of_memory = true;
+    return false;
   }
-  spans->data[spans->count++] = span;
+  if (spans->count) memcpy(data, spans->data, (size_t)spans->count * sizeof *data);
+  tc_release(spans->context, spans->data);
+  spans->data = data;
+  spans->capacity = capacity;
+  return true;
 }
 
 /* Whether the ray crosses the triangle of three points, and its edges' values. */
@@ -43,10 +41,11 @@ static void shell_candidate(void *user, uint32_t i) {
   for (int k = 0; k < 3; ++k) p[k] = tc_project(query->shell->volume, query->ray, face->vertex[k]);
   double edge[3];
   if (!crosses(&p[0], &p[1], &p[2], edge)) return;
-  TcSpan span = {.id = i};
-  tc_crossing(&p[0], &p[1], &p[2], edge[0], edge[1], edge[2], &span.begin, &span.s0);
-  span.end = span.begin;
-  tc_spans_append(query->spans, span);
+  TcSpan *span = tc_spans_append(query->spans);
+  if (!span) return;
+  *span = (TcSpan){.id = i};
+  tc_crossing(&p[0], &p[1], &p[2], edge[0], edge[1], edge[2], &span->begin, &span->s0);
+  span->end = span->begin;
 }
 
 /* A ray crosses none or exactly two of a cell's faces. */
@@ -73,7 +72,8 @@ static void cell_candidate(void *user, uint32_t i) {
   Query *query = user;
   TcWalk at[2];
   if (!tc_cross_cell(query->shell->volume, query->ray, i, at)) return;
-  tc_spans_append(query->spans, (TcSpan){.begin = at[0].z, .end = at[1].z, .s0 = at[0].s, .s1 = at[1].s, .id = i});
+  TcSpan *span = tc_spans_append(query->spans);
+  if (span) *span = (TcSpan){.begin = at[0].z, .end = at[1].z, .s0 = at[0].s, .s1 = at[1].s, .id = i};
 }
 
 static int compare_spans(const void *left, const void *right) {

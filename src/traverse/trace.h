@@ -22,8 +22,13 @@ typedef struct TcSpans {
 
 /* Everything along the line, sorted by begin, end, id: the same order whatever order Embree finds it in. False: out of memory. */
 bool tc_trace(const TcShell *shell, const TcRay *ray, TcSpans *spans);
-void tc_spans_append(TcSpans *spans, TcSpan span);
+bool tc_spans_grow(TcSpans *spans);
 void tc_spans_sort(TcSpans *spans);
 void tc_spans_clear(TcSpans *spans);
+
+/* One more, for the caller to fill; NULL: out of memory. */
+static inline TcSpan *tc_spans_append(TcSpans *spans) {
+  return spans->count < spans->capacity || tc_spans_grow(spans) ? &spans->data[spans->count++] : NULL;
+}
 
 #endif
