@@ -48,7 +48,7 @@ struct TetcastScene {
   int64_t field_number;            /* for which the rest holds; 0: for none */
   TetcastTransferFunction *scaled; /* in the volume's units */
   TcShell shell;                   /* of what can be seen */
-  bool steepness_known;            /* found by the first frame with a tolerance that may need it */
+  int64_t steepness_number;        /* the field for which the steepness holds; 0: none. Found by the first frame that may need it */
   TcSteepness steepness;
 };
 

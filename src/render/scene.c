@@ -21,7 +21,6 @@ static void forget(TetcastScene *scene) {
   tc_transfer_destroy(scene->scaled);
   scene->scaled = NULL;
   scene->field_number = 0;
-  scene->steepness_known = false;
 }
 
 /* Calls for one scene may come at the same time: one of them does the work. None is under way that uses what is replaced, as neither
@@ -40,10 +39,13 @@ static TetcastStatus prepare(TetcastScene *scene) {
   return status;
 }
 
-/* Single precision for packets, where a bound on what it costs leaves enough of the tolerance: that is at first asked with a field without
- * slope, since finding its slope takes a while. */
-static TetcastStatus allow_single(TetcastScene *scene, double wanted, TcTolerance *tolerance) {
+/* Single precision for packets, where a bound on what it costs leaves enough of the tolerance. To find out how steep the field is takes about as
+ * long as is saved at eight crossings of each cell: small pictures of large meshes are not worth it, nor is what would not do even for a
+ * flat field. */
+static TetcastStatus allow_single(TetcastScene *scene, double wanted, int64_t rays, TcTolerance *tolerance) {
   const TetcastVolume *volume = scene->volume;
+  const double cells = (double)volume->cell_count;
+  if (!(wanted > 0) || (double)rays * cbrt(cells) < 4 * cells) return TETCAST_OK;
   const TcPieces *pieces = &scene->scaled->pieces;
   TcTolerance half = tc_tolerance_begin(pieces, 0.5 * wanted), flat = half;
   TcExtent extent = {.radius = volume->radius};
@@ -51,8 +53,8 @@ static TetcastStatus allow_single(TetcastScene *scene, double wanted, TcToleranc
   if (!tc_tolerance_allow_single(pieces, &extent, 0.5 * wanted, &flat)) return TETCAST_OK;
   TetcastStatus status = TETCAST_OK;
   pthread_mutex_lock(&scene->mutex);
-  if (!scene->steepness_known) status = tc_steepness(volume, &scene->steepness);
-  scene->steepness_known = !status;
+  if (scene->steepness_number != volume->field_number) status = tc_steepness(volume, &scene->steepness);
+  if (!status) scene->steepness_number = volume->field_number;
   pthread_mutex_unlock(&scene->mutex);
   extent = (TcExtent){volume->radius, scene->steepness.diameter, scene->steepness.gradient, scene->steepness.value};
   if (!status && tc_tolerance_allow_single(pieces, &extent, 0.5 * wanted, &half)) *tolerance = half;
@@ -210,7 +212,7 @@ TetcastStatus tc_scene_render(TetcastScene *scene, const TetcastCamera *camera, 
     if (exact) render.kernel = choose_kernel(job, desc->isa, &sum.isa);
 #ifdef TC_HAVE_X86
     if (render.kernel == tc_kernel_avx2 || render.kernel == tc_kernel_avx512) {
-      status = allow_single(scene, desc->tolerance, &start.tolerance);
+      status = allow_single(scene, desc->tolerance, sum.rays, &start.tolerance);
       if (start.tolerance.single_most > 0) sum.precision = "single";
     }
 #endif

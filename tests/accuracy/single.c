@@ -52,7 +52,6 @@ static int check(TetcastContext *context, const TetcastVolume *volume, const Tet
         assert_true(off <= picture.error[i] + exact.error[i]);
         if (used && is_single && picture.error[i] > 0) *used = fmax(*used, off / picture.error[i]);
       }
-      assert_true((picture.rgba[4 * i + 3] > 0) == (exact.rgba[4 * i + 3] > 0));
     }
   }
   tetcast_scene_destroy(&scene);
@@ -61,13 +60,13 @@ static int check(TetcastContext *context, const TetcastVolume *volume, const Tet
 
 static int kernels(void) { return tc_cpu_has(TETCAST_ISA_AVX512) + tc_cpu_has(TETCAST_ISA_AVX2); }
 
-/* Continuous, with up to eight knots; now and then of one colour. */
-static TetcastTransferFunction *continuous(TetcastContext *context, uint64_t *seed, double strength) {
+/* Continuous, with knots near or on the eighths; now and then of one colour. */
+static TetcastTransferFunction *continuous(TetcastContext *context, uint64_t *seed, double strength, bool on_eighths) {
   double color[8][4], extinction[8][2];
   const bool gray = uniform(seed) < 0.25;
   for (int i = 0; i < 8; ++i) {
-    color[i][0] = (i + 0.5 * uniform(seed)) / 8;
-    extinction[i][0] = i % 2 ? color[i][0] : (i + 0.5 * uniform(seed)) / 8;
+    color[i][0] = (i + (on_eighths ? 0 : 0.5) * uniform(seed)) / 8;
+    extinction[i][0] = i % 2 ? color[i][0] : (i + (on_eighths ? 0 : 0.5) * uniform(seed)) / 8;
     for (int k = 1; k < 4; ++k) color[i][k] = gray ? 0.25 * k : uniform(seed);
     extinction[i][1] = uniform(seed) < 0.3 ? 0 : strength * uniform(seed);
   }
@@ -139,8 +138,10 @@ static void bounds_hold(void **state) {
     if (i % 10 == 9) { /* a thin plate */
       for (int64_t j = 0; j < cube.vertex_count; ++j) cube.vertices[3 * j + 2] = 0.5 + 1e-3 * cube.vertices[3 * j + 2];
     }
+    const bool eighths = i % 7 == 3; /* whole cells lie on a knot */
+    for (int64_t j = 0; eighths && j < cube.vertex_count; ++j) cube.values[j] = floor(4 * cube.values[j]) / 4;
     TetcastVolume *volume = i % 2 ? narrow_volume(fixture.context, &cube) : cube_volume(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
-    TetcastTransferFunction *transfer = continuous(fixture.context, &seed, power(&seed, -3, 2));
+    TetcastTransferFunction *transfer = continuous(fixture.context, &seed, power(&seed, -3, 2), eighths);
     const TetcastCamera camera = random_camera(i, &seed);
     single += check(fixture.context, volume, transfer, &camera, i % 3 ? 1e-2 : 1e-3, &used);
     tetcast_transfer_function_destroy(&transfer);
@@ -176,7 +177,7 @@ static void edge_on(void **state) {
     two.cells[i] = one.cells[i % (4 * one.cell_count)] + (i < 4 * one.cell_count ? 0 : one.vertex_count);
   }
   TetcastVolume *volume = cube_volume(fixture.context, &two, TETCAST_TRAVERSAL_SHELL);
-  TetcastTransferFunction *transfer = continuous(fixture.context, &seed, 2);
+  TetcastTransferFunction *transfer = continuous(fixture.context, &seed, 2, false);
   enum { VIEWS = 18 };
   int single = 0;
   for (int i = 0; i < VIEWS; ++i) { /* the picture's middle is in the plane */
