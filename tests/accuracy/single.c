@@ -278,6 +278,19 @@ static void steepness_is_that_of_the_field(void **state) {
   assert_true(steepness.value == 7); /* at (0, 1, 0) */
   tetcast_volume_destroy(&volume);
   cube_destroy(&cube);
+  for (int i = 0; i < 6; ++i) { /* one cell, each of its edges the longest by turns */
+    double vertices[4][3] = {{0, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}}, values[4] = {0, 1, 2, 3};
+    int64_t cell[4] = {0, 1, 2, 3};
+    static const int ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+    double *a = vertices[ends[i][0]], *b = vertices[ends[i][1]];
+    for (int k = 0; k < 3; ++k) a[k] += 0.25 * (a[k] - b[k]);
+    const double length = hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+    const Cube one = {4, 1, vertices[0], cell, values};
+    volume = cube_volume(fixture.context, &one, TETCAST_TRAVERSAL_SHELL);
+    assert_int_equal(tc_steepness(volume, &steepness), TETCAST_OK);
+    assert_true(fabs(ldexp(steepness.diameter, volume->exponent) / length - 1.0015) < 0.0015);
+    tetcast_volume_destroy(&volume);
+  }
   fixture_end(&fixture);
 }
 
