@@ -151,6 +151,8 @@ static void face_candidate(void *user, uint32_t i, unsigned lanes) {
   TcRecord record[3];
   for (int k = 0; k < 3; ++k) record[k] = tc_load_record(queue->shell->volume, vertex[k]);
   TC_UNROLLED for (int j = 0; j < TC_PACKETS; ++j) {
+    const unsigned of_packet = lanes >> j * TC_LANES & tc_bits(tc_all());
+    if (!of_packet) continue;
     const TcRays *rays = &queue->waiting[j].rays;
     const int kz = rays->kz, kx = kz == 2 ? 0 : kz + 1, ky = kz == 0 ? 2 : kz - 1;
     TcPoints p[3];
@@ -167,7 +169,7 @@ static void face_candidate(void *user, uint32_t i, unsigned lanes) {
       right = tc_or(right, below);
       decided = tc_and(decided, tc_or(above, below));
     }
-    const unsigned reached = lanes >> j * TC_LANES & tc_bits(tc_and_not(tc_all(), tc_and(left, right)));
+    const unsigned reached = of_packet & ~tc_bits(tc_and(left, right));
     if (!reached) continue;
     const TcPoints copy[3] = {p[0], p[1], p[2]};
     face_reached(&queue->waiting[j], i, reached, reached & ~tc_bits(decided), copy);
