@@ -91,6 +91,23 @@ static int64_t merge_knots(const Knots *a, const Knots *b, double *merged) {
 
 static bool is_empty(const TcPiece *piece) { return piece->at_low.extinction == 0 && piece->at_high.extinction == 0; }
 
+/* Where rays go from piece i, the next above or below: several pieces without extinction are passed at once. −1, count + 1: none. */
+static double next_piece(const TcPieces *pieces, int64_t i, int step) {
+  const int64_t next = i + step, second = next + step;
+  if (second < 0 || second > pieces->count || !is_empty(&pieces->pieces[next]) || !is_empty(&pieces->pieces[second])) return (double)next;
+  return step > 0 ? pieces->pieces[next].filled_above : pieces->pieces[next].filled_below;
+}
+
+static void make_row(const TcPieces *pieces, int64_t i, double row[TC_PIECE_WORDS]) {
+  const TcPiece *piece = &pieces->pieces[i];
+  const TcOptics *a = &piece->at_low, *b = &piece->at_high;
+  const bool constant = piece->constant;
+  const double words[TC_PIECE_WORDS] = {piece->low, piece->high, constant ? 0 : piece->low, constant ? 0 : piece->high, piece->inverse, constant,
+                                        a->extinction, b->extinction, a->color[0], a->color[1], a->color[2], b->color[0], b->color[1], b->color[2],
+                                        next_piece(pieces, i, 1), next_piece(pieces, i, -1)};
+  memcpy(row, words, sizeof words);
+}
+
 /* What follows from the pieces as they are. */
 static void look_at_pieces(TetcastTransferFunction *transfer) {
   TcPieces *pieces = &transfer->pieces;
@@ -118,6 +135,7 @@ static void look_at_pieces(TetcastTransferFunction *transfer) {
     for (int k = 0; !is_empty(piece) && k < 3; ++k) {
       if (piece->at_low.color[k] != pieces->largest[k] || piece->at_high.color[k] != pieces->largest[k]) pieces->one_color = false;
     }
+    make_row(pieces, i, transfer->row[i]);
   }
 }
 
@@ -138,7 +156,7 @@ static void make_pieces(TetcastTransferFunction *transfer) {
     piece->constant = a->extinction == b->extinction && a->color[0] == b->color[0] && a->color[1] == b->color[1] &&
                       a->color[2] == b->color[2];
   }
-  transfer->pieces = (TcPieces){.count = n, .knots = transfer->knots, .pieces = transfer->piece};
+  transfer->pieces = (TcPieces){.count = n, .knots = transfer->knots, .pieces = transfer->piece, .rows = transfer->row};
   look_at_pieces(transfer);
 }
 
@@ -189,7 +207,8 @@ TetcastStatus tc_transfer_create(TetcastContext *context, const TetcastTransferF
   if (!tc_allocate_array(context, (void **)&transfer->color, desc->color_count, 4 * sizeof(double), "transfer function") ||
       !tc_allocate_array(context, (void **)&transfer->extinction, count, 2 * sizeof(double), "transfer function") ||
       !tc_allocate_array(context, (void **)&transfer->knots, most, sizeof(double), "transfer function") ||
-      !tc_allocate_array(context, (void **)&transfer->piece, most + 1, sizeof *transfer->piece, "transfer function")) {
+      !tc_allocate_array(context, (void **)&transfer->piece, most + 1, sizeof *transfer->piece, "transfer function") ||
+      !tc_allocate_array(context, (void **)&transfer->row, most + 1, sizeof *transfer->row, "transfer function")) {
     tc_transfer_destroy(transfer);
     return TETCAST_ERROR_MEMORY;
   }
@@ -238,5 +257,6 @@ void tc_transfer_destroy(TetcastTransferFunction *transfer) {
   tc_release(context, transfer->extinction);
   tc_release(context, transfer->knots);
   tc_release(context, transfer->piece);
+  tc_release(context, transfer->row);
   tc_release(context, transfer);
 }

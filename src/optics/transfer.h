@@ -21,11 +21,16 @@ typedef struct TcPiece {
   bool constant;
 } TcPiece;
 
+/* A piece as packets load it, all doubles: low, high; twice the same for interpolation, 0 if it is constant; inverse; 1 if it is constant, else 0;
+ * extinction at low, at high; colour at low; at high; the next pieces above and below (count + 1, −1: none), several without extinction passed. */
+enum { TC_PIECE_WORDS = 16 };
+
 /* count + 1 pieces between count distinct knots: piece i ends at knot[i], piece i + 1 begins there. */
 typedef struct TcPieces {
   int64_t count;
   const double *knots; /* [count], ascending */
   const TcPiece *pieces;
+  double (*rows)[TC_PIECE_WORDS]; /* the same for packets */
   double largest[3]; /* of each colour component, where there is any extinction */
   bool one_color;    /* the colour is `largest` wherever there is any extinction */
   bool narrow;       /* a piece is so narrow that `inverse` overflows */
@@ -38,6 +43,7 @@ struct TetcastTransferFunction {
   double *extinction; /* [extinction_count][2] */
   double *knots;
   TcPiece *piece;
+  double (*row)[TC_PIECE_WORDS];
   TcPieces pieces;
 };
 

@@ -14,7 +14,6 @@
 typedef struct TcLights {
   TcVec color[3], depth, transmittance;                   /* of the finished blocks */
   TcVec block_color[3], block_depth, block_transmittance; /* of the block under way */
-  int64_t piece;                                          /* where the last segment was */
   TcVec alpha;                                            /* at the end */
 } TcLights;
 
@@ -39,10 +38,19 @@ TC_INLINE void tc_lights_end_block(const bool colored, TcLights *lights) {
   lights->block_transmittance = tc_set(1);
 }
 
-/* A lane's piece each, as it lies in TcPiece. */
+/* A lane's piece each, as TcPieces.rows has it. */
 typedef struct TcLanePieces {
-  TcVec low, high, k0, color0[3], k1, color1[3], inverse, rest;
+  TcVec low, high, from, to, inverse, constant, k0, k1, color0[3], color1[3], above, below;
 } TcLanePieces;
+
+/* Where lanes are within their segments. Kept from packet to packet. */
+typedef struct TcParts {
+  TcLanePieces piece;     /* each lane's own */
+  TcVec at;               /* its number */
+  TcVec length, s0, done; /* of the segment; the scalar up to which it has been added */
+  TcMask pending;         /* lanes with more of it to add */
+  TcMask filled;          /* lanes whose pieces have any extinction */
+} TcParts;
 
 /* Segments with these weights of the pieces' colours at their two ends. */
 TC_INLINE void tc_lights_composite(TcLights *lights, const TcLanePieces *piece, TcVec low, TcVec high, TcVec depth, TcVec transmittance) {
@@ -53,20 +61,11 @@ TC_INLINE void tc_lights_composite(TcLights *lights, const TcLanePieces *piece, 
   lights->block_depth += depth;
 }
 
-/* Parts of a segment, a lane each; of length 0 in lanes not in `here`. `any_constant`, a constant wherever this is used: whether pieces may be
- * constant. */
-TC_INLINE void tc_lights_add_parts(const bool colored, TcLights *lights, const TcLanePieces *piece, const bool any_constant, double thin,
-                                   TcMask here, TcVec length, TcVec s0, TcVec s1) {
-  TcVec near_high = (s0 - piece->low) * piece->inverse, near_low = (piece->high - s0) * piece->inverse;
-  TcVec far_high = (s1 - piece->low) * piece->inverse, far_low = (piece->high - s1) * piece->inverse;
-  if (any_constant) {
-    const TcVec zero = tc_set(0), one = tc_set(1);
-    const TcMask constant = tc_eq(piece->inverse, zero);
-    near_high = tc_select(constant, zero, near_high);
-    near_low = tc_select(constant, one, near_low);
-    far_high = tc_select(constant, zero, far_high);
-    far_low = tc_select(constant, one, far_low);
-  }
+/* Parts of segments, a lane each within its piece; of length 0 where nothing is to happen. */
+TC_INLINE void tc_lights_add_parts(const bool colored, TcLights *lights, const TcLanePieces *piece, double thin, TcMask here, TcVec length,
+                                   TcVec s0, TcVec s1) {
+  const TcVec near_high = (s0 - piece->from) * piece->inverse, near_low = tc_madd(piece->to - s0, piece->inverse, piece->constant);
+  const TcVec far_high = (s1 - piece->from) * piece->inverse, far_low = tc_madd(piece->to - s1, piece->inverse, piece->constant);
   const TcVec a = tc_madd(near_high, piece->k1, near_low * piece->k0) * length, a1 = tc_madd(far_high, piece->k1, far_low * piece->k0) * length;
   const TcVec depth = 0.5 * a + 0.5 * a1;
   if (!colored) {
@@ -79,141 +78,102 @@ TC_INLINE void tc_lights_add_parts(const bool colored, TcLights *lights, const T
                       segments.transmittance);
 }
 
-TC_INLINE TcLanePieces tc_set_pieces(const TcPiece *piece) {
-  TcLanePieces all = {.low = tc_set(piece->low), .high = tc_set(piece->high), .inverse = tc_set(piece->inverse),
-                      .k0 = tc_set(piece->at_low.extinction), .k1 = tc_set(piece->at_high.extinction)};
-  for (int k = 0; k < 3; ++k) {
-    all.color0[k] = tc_set(piece->at_low.color[k]);
-    all.color1[k] = tc_set(piece->at_high.color[k]);
+TC_INLINE void tc_load_pieces(const TcPieces *pieces, TcParts *parts) {
+  _Static_assert(sizeof parts->piece == TC_PIECE_WORDS * sizeof(TcVec), "loaded as records of four");
+  TcVec word[TC_PIECE_WORDS], whole;
+  tc_load_records(pieces->rows[0], tc_nearest(parts->at * TC_PIECE_WORDS, &whole), TC_PIECE_WORDS / 4, word);
+  memcpy(&parts->piece, word, sizeof parts->piece);
+  parts->filled = tc_or(tc_lt(tc_set(0), parts->piece.k0), tc_lt(tc_set(0), parts->piece.k1));
+}
+
+/* The lanes of `mask` find the pieces where they are: at a knot that before which what is left of the segment lies; a segment of one value, the
+ * later. `up`: those whose values do not fall. */
+static __attribute__((noinline)) void tc_parts_locate(const TcPieces *pieces, TcMask mask, TcMask up, TcParts *parts) {
+  const TcVec zero = tc_set(0), one = tc_set(1);
+  TcVec at = zero;
+  if (pieces->count <= 32) {
+    for (int64_t i = 0; i < pieces->count; ++i) {
+      const TcVec knot = tc_set(pieces->knots[i]);
+      at += tc_select(tc_or(tc_lt(knot, parts->done), tc_and(up, tc_eq(knot, parts->done))), one, zero);
+    }
+  } else {
+    for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
+      const int i = __builtin_ctz(lanes);
+      at[i] = (double)(tc_bits(up) >> i & 1 ? tc_piece_above(pieces, parts->done[i]) : tc_piece_below(pieces, parts->done[i]));
+    }
   }
-  return all;
+  parts->at = tc_select(mask, at, parts->at);
+  tc_load_pieces(pieces, parts);
 }
 
-/* All in one piece. Lanes not in `mask` have length 0 and finite scalars: nothing happens in them. */
-TC_INLINE void tc_lights_add_part(const bool colored, TcLights *lights, const TcPiece *piece, double thin, TcMask mask, TcVec length,
-                                  TcVec s0, TcVec s1) {
-  const TcLanePieces all = tc_set_pieces(piece);
-  if (!piece->constant) {
-    tc_lights_add_parts(colored, lights, &all, false, thin, mask, length, s0, s1);
-    return;
+/* The lanes whose segments go on beyond the pieces that they are in. part: the length and the end of those parts that do not, or not any more. */
+TC_INLINE TcMask tc_parts_limit(const TcPieces *pieces, TcMask mask, TcParts *parts, TcVec part[2]) {
+  const TcLanePieces *piece = &parts->piece;
+  const TcVec done = parts->done, s1 = part[1], whole = tc_abs(s1 - parts->s0);
+  const TcMask up = tc_le(parts->s0, s1);
+  const TcMask rising = tc_and(up, tc_and(tc_le(piece->low, done), tc_lt(done, piece->high)));
+  const TcMask falling = tc_and_not(tc_and(tc_lt(piece->low, done), tc_le(done, piece->high)), up);
+  const TcMask misplaced = tc_and_not(mask, tc_or(rising, falling));
+  if (tc_any(misplaced)) tc_parts_locate(pieces, misplaced, up, parts);
+  const TcMask crossing = tc_and(mask, tc_or(tc_and(up, tc_lt(piece->high, s1)), tc_and_not(tc_lt(s1, piece->low), up)));
+  part[1] = tc_select(crossing, tc_select(up, piece->high, piece->low), s1);
+  /* From differences of scalars, not of positions along the segment: nothing cancels. */
+  part[0] = parts->length * tc_select(tc_eq(whole, tc_set(0)), tc_set(1), tc_abs(part[1] - done) / whole);
+  return crossing;
+}
+
+/* The lanes of `crossing` come to the next piece, and are pending if there is something to add of what is left of their segments, up to s1. */
+static __attribute__((noinline)) void tc_parts_next(const TcPieces *pieces, TcMask crossing, const TcVec *end, TcParts *parts) {
+  const TcVec s1 = *end;
+  const TcMask up = tc_le(parts->s0, s1);
+  const TcVec next = tc_select(up, parts->piece.above, parts->piece.below);
+  const TcMask valid = tc_and(crossing, tc_and(tc_le(tc_set(0), next), tc_le(next, tc_set((double)pieces->count))));
+  parts->at = tc_select(valid, next, parts->at);
+  tc_load_pieces(pieces, parts);
+  const TcLanePieces *piece = &parts->piece;
+  const TcMask reached = tc_or(tc_and(up, tc_lt(piece->low, s1)), tc_and_not(tc_lt(s1, piece->high), up));
+  const TcMask further = tc_or(tc_and(up, tc_lt(piece->high, s1)), tc_and_not(tc_lt(s1, piece->low), up));
+  parts->pending = tc_and(tc_and(valid, reached), tc_or(parts->filled, further));
+  parts->done = tc_select(parts->pending, tc_select(up, piece->low, piece->high), parts->done);
+}
+
+/* tc_light_add() in the lanes of `mask`: the part of their segments, which end with the value s1, that lies in one piece. Lanes that meet a knot
+ * are pending then, while others go on: most knots are met by few lanes of a packet at a time. */
+TC_INLINE void tc_lights_add(const bool colored, TcLights *lights, TcParts *parts, const TcPieces *pieces, double thin, TcMask mask, TcVec s1) {
+  const TcLanePieces *piece = &parts->piece;
+  const TcVec least = tc_min(parts->done, s1), most = tc_max(parts->done, s1);
+  const TcMask here = tc_and(tc_and(tc_le(piece->low, least), tc_lt(least, piece->high)), tc_le(most, piece->high));
+  TcVec part[2] = {parts->length, s1};
+  TcMask crossing = tc_mask_of(0);
+  if (tc_any(tc_or(tc_and_not(mask, here), parts->pending))) crossing = tc_parts_limit(pieces, mask, parts, part);
+  if (tc_any(tc_and(mask, parts->filled))) {
+    tc_lights_add_parts(colored, lights, piece, thin, mask, tc_select(mask, part[0], tc_set(0)), tc_select(mask, parts->done, piece->from),
+                        tc_select(mask, part[1], piece->from));
   }
-  const TcVec depth = all.k0 * length;
-  if (!colored) {
-    lights->block_depth += depth;
-    return;
-  }
-  const TcSegments segments = tc_segments_constant(mask, depth);
-  tc_lights_composite(lights, &all, lights->block_transmittance * segments.w0, tc_set(0), depth, segments.transmittance);
-}
-
-TC_INLINE TcLanePieces tc_load_pieces(const TcPieces *pieces, TcVec at) {
-  enum { STRIDE = sizeof(TcPiece) / sizeof(double), WORDS = sizeof(TcLanePieces) / sizeof(TcVec) };
-  _Static_assert(STRIDE >= WORDS && offsetof(TcPiece, inverse) == offsetof(TcLanePieces, inverse) / TC_LANES, "loaded as records of four");
-  TcVec word[WORDS], whole;
-  tc_load_records(&pieces->pieces->low, tc_nearest(at * STRIDE, &whole), WORDS / 4, word);
-  TcLanePieces piece;
-  memcpy(&piece, word, sizeof piece);
-  return piece;
-}
-
-/* The pieces between which segments from `least` to `most` have extinction, and, from one of them, where `s` lies. Of many pieces, those
- * far from that are not looked at. */
-TC_INLINE int64_t tc_find_pieces(const TcPieces *pieces, int64_t from, TcMask mask, TcVec least, TcVec most, double s, TcVec *first,
-                                 TcVec *last) {
-  const bool many = pieces->count > 32;
-  int64_t i = many ? from : 0;
-  while (i > 0 && tc_any(tc_and(mask, tc_lt(least, tc_set(pieces->knots[i - 1]))))) --i;
-  int64_t at = i;
-  *first = tc_set(pieces->pieces[i].filled_above);
-  *last = tc_set(pieces->pieces[i].filled_below);
-  for (; i < pieces->count; ++i) {
-    const TcVec knot = tc_set(pieces->knots[i]);
-    const TcMask reached = tc_le(knot, most);
-    if (many && !tc_any(tc_and(mask, reached))) break;
-    *first = tc_select(tc_le(knot, least), tc_set(pieces->pieces[i + 1].filled_above), *first);
-    *last = tc_select(reached, tc_set(pieces->pieces[i + 1].filled_below), *last);
-    at += pieces->knots[i] <= s;
-  }
-  return at;
-}
-
-/* Segments that lie in several pieces: lanes pass from piece to piece, each where it is, from the first to the last that has any extinction.
- * Where a segment begins or ends on a knot, the piece above may come in with a part of length 0. */
-TC_INLINE void tc_lights_split(const bool colored, TcLights *lights, const TcPieces *pieces, double thin, TcMask mask,
-                               const TcVec *whole_length, const TcVec *from, const TcVec *to) {
-  const TcVec zero = tc_set(0), one = tc_set(1), length = *whole_length;
-  const TcVec s0 = tc_select(mask, *from, zero), s1 = tc_select(mask, *to, zero), whole = tc_abs(s1 - s0);
-  const TcMask rising = tc_le(s0, s1);
-  TcVec first, last;
-  const double s = s1[__builtin_ctz(tc_bits(mask))];
-  lights->piece = tc_find_pieces(pieces, lights->piece, mask, tc_min(s0, s1), tc_max(s0, s1), s, &first, &last);
-  TcMask pending = tc_and(mask, tc_le(first, last));
-  const TcVec end = tc_select(rising, last, first), step = tc_select(rising, one, -one);
-  TcVec at = tc_select(rising, first, last);
-  while (tc_any(pending)) {
-    at = tc_select(pending, at, zero);
-    const TcLanePieces piece = tc_load_pieces(pieces, at);
-    const TcVec near = tc_max(tc_min(s0, piece.high), piece.low), far = tc_max(tc_min(s1, piece.high), piece.low);
-    const TcVec part = length * tc_select(tc_eq(whole, zero), one, tc_abs(far - near) / whole);
-    tc_lights_add_parts(colored, lights, &piece, true, thin, pending, tc_select(pending, part, zero), near, far);
-    pending = tc_and_not(pending, tc_eq(at, end));
-    at += step;
-  }
-}
-
-static __attribute__((noinline)) void tc_lights_split_colored(TcLights *lights, const TcPieces *pieces, double thin, TcMask mask,
-                                                              const TcVec segment[3]) {
-  tc_lights_split(true, lights, pieces, thin, mask, &segment[0], &segment[1], &segment[2]);
-}
-
-static __attribute__((noinline)) void tc_lights_split_depth(TcLights *lights, const TcPieces *pieces, TcMask mask, const TcVec segment[3]) {
-  tc_lights_split(false, lights, pieces, 0, mask, &segment[0], &segment[1], &segment[2]);
-}
-
-/* tc_light_add() in the lanes of `mask`. */
-TC_INLINE void tc_lights_add(const bool colored, TcLights *lights, const TcPieces *pieces, double thin, TcMask mask, TcVec length, TcVec s0,
-                             TcVec s1) {
-  const TcPiece *piece = &pieces->pieces[lights->piece];
-  const TcVec low = tc_set(piece->low), high = tc_set(piece->high), least = tc_min(s0, s1), most = tc_max(s0, s1);
-  const TcMask here = tc_and(mask, tc_and(tc_and(tc_le(low, least), tc_lt(least, high)), tc_le(most, high)));
-  if (tc_bits(here) == tc_bits(mask)) {
-    if (piece->at_low.extinction == 0 && piece->at_high.extinction == 0) return;
-    const TcVec zero = tc_set(0), inside = piece->constant ? zero : low;
-    tc_lights_add_part(colored, lights, piece, thin, mask, tc_select(mask, length, zero), tc_select(mask, s0, inside),
-                       tc_select(mask, s1, inside));
-    return;
-  }
-  const TcVec segment[3] = {length, s0, s1};
-  if (colored) tc_lights_split_colored(lights, pieces, thin, mask, segment);
-  else tc_lights_split_depth(lights, pieces, mask, segment);
+  parts->pending = tc_mask_of(0);
+  if (tc_any(crossing)) tc_parts_next(pieces, crossing, &s1, parts);
 }
 
 /* tc_light_add_constant() in the lanes of `mask`. */
-TC_INLINE void tc_lights_add_constant(const bool colored, TcLights *lights, const TcPieces *pieces, TcMask mask, TcVec length, TcVec s) {
-  const TcVec zero = tc_set(0), one = tc_set(1);
-  const TcPiece *same = &pieces->pieces[lights->piece];
-  const TcMask here = tc_and(mask, tc_and(tc_le(tc_set(same->low), s), tc_lt(s, tc_set(same->high))));
-  TcLanePieces piece;
-  if (tc_bits(here) == tc_bits(mask)) {
-    if (same->at_low.extinction == 0 && same->at_high.extinction == 0) return;
-    piece = tc_set_pieces(same);
-  } else {
-    TcVec first, last;
-    lights->piece = tc_find_pieces(pieces, lights->piece, mask, s, s, s[__builtin_ctz(tc_bits(mask))], &first, &last);
-    mask = tc_and(mask, tc_le(first, last));
-    if (!tc_any(mask)) return;
-    piece = tc_load_pieces(pieces, tc_select(mask, first, zero));
+TC_INLINE void tc_lights_add_constant(const bool colored, TcLights *lights, TcParts *parts, const TcPieces *pieces, TcMask mask, TcVec length,
+                                      TcVec s) {
+  const TcLanePieces *piece = &parts->piece;
+  const TcMask here = tc_and(tc_le(piece->low, s), tc_lt(s, piece->high));
+  if (tc_any(tc_and_not(mask, here))) {
+    parts->done = s;
+    tc_parts_locate(pieces, mask, mask, parts);
   }
-  const TcMask inside = tc_and_not(mask, tc_eq(piece.inverse, zero)); /* lanes in pieces that are not constant */
-  const TcVec high = tc_select(inside, (s - piece.low) * piece.inverse, zero), low = tc_select(inside, (piece.high - s) * piece.inverse, one);
-  const TcVec depth = tc_madd(high, piece.k1, low * piece.k0) * tc_select(mask, length, zero);
+  if (!tc_any(tc_and(mask, parts->filled))) return;
+  s = tc_select(mask, s, piece->from);
+  const TcVec high = (s - piece->from) * piece->inverse, low = tc_madd(piece->to - s, piece->inverse, piece->constant);
+  const TcVec depth = tc_madd(high, piece->k1, low * piece->k0) * tc_select(mask, length, tc_set(0));
   if (!colored) {
     lights->block_depth += depth;
     return;
   }
   const TcSegments segments = tc_segments_constant(mask, depth);
   const TcVec weight = lights->block_transmittance * segments.w0;
-  tc_lights_composite(lights, &piece, low * weight, high * weight, depth, segments.transmittance);
+  tc_lights_composite(lights, piece, low * weight, high * weight, depth, segments.transmittance);
 }
 
 /* tc_light_opaque(): the lanes that are complete. */

@@ -18,6 +18,7 @@ typedef struct Packet {
   TcRays rays;
   TcWalks walks;
   TcLights lights;
+  TcParts parts;
   TcVec seen; /* depth up to which a path has been seen */
   unsigned active;   /* lanes on their way, those of `ended` included */
   unsigned lanes;    /* those of rays */
@@ -72,7 +73,7 @@ TC_INLINE void add_light(const TetcastVolume *volume, const bool cells, const bo
     TcVec value;
     for (int i = 0; i < TC_LANES; ++i) value[i] = volume->cell_values[index[i]];
     moved = tc_and(moved, tc_eq(value, value)); /* NaN is transparent */
-    tc_lights_add_constant(colored, &packet->lights, pieces, moved, walks->z - from, value);
+    tc_lights_add_constant(colored, &packet->lights, &packet->parts, pieces, moved, walks->z - from, value);
   } else {
     TcVec s0 = s;
     const TcMask behind = tc_and(moved, tc_lt(z, from));
@@ -81,7 +82,11 @@ TC_INLINE void add_light(const TetcastVolume *volume, const bool cells, const bo
       s0 = tc_select(behind, (1 - w) * s + w * walks->s, s);
     }
     moved = tc_and(moved, tc_and(tc_eq(s0, s0), tc_eq(walks->s, walks->s)));
-    tc_lights_add(colored, &packet->lights, pieces, worker->tolerance.thin, moved, walks->z - from, s0, walks->s);
+    TcParts *parts = &packet->parts;
+    parts->length = tc_select(moved, walks->z - from, parts->length);
+    parts->s0 = tc_select(moved, s0, parts->s0);
+    parts->done = tc_select(moved, s0, parts->done);
+    tc_lights_add(colored, &packet->lights, parts, pieces, worker->tolerance.thin, tc_or(moved, parts->pending), walks->s);
   }
 }
 
@@ -148,16 +153,17 @@ TC_INLINE void advance(const TcShell *shell, const bool wide, const bool cells, 
   while (!halt) {
     TcStep step[TC_PACKETS];
     TcVec z[TC_PACKETS], s[TC_PACKETS];
-    TcMask lost[TC_PACKETS];
+    TcMask walking[TC_PACKETS], lost[TC_PACKETS];
     TC_EACH_PACKET {
+      walking[i] = cells ? active[i] : tc_and_not(active[i], packet[i].parts.pending);
       z[i] = packet[i].walks.z;
       s[i] = packet[i].walks.s;
-      packet[i].from = tc_select_word(active[i], packet[i].walks.cell, packet[i].from);
-      tc_step_cells(shell->volume, active[i], &packet[i].walks, &step[i]);
+      packet[i].from = tc_select_word(walking[i], packet[i].walks.cell, packet[i].from);
+      tc_step_cells(shell->volume, walking[i], &packet[i].walks, &step[i]);
     }
     TC_EACH_PACKET tc_step_vertices(shell->volume, wide, &packet[i].rays, &step[i]);
-    TC_EACH_PACKET lost[i] = tc_step_out(cells, active[i], &step[i], &packet[i].walks);
-    TC_EACH_PACKET add_light(shell->volume, cells, colored, pieces, tc_and_not(active[i], lost[i]), z[i], s[i], packet[i].from, &packet[i], worker);
+    TC_EACH_PACKET lost[i] = tc_step_out(cells, walking[i], &step[i], &packet[i].walks);
+    TC_EACH_PACKET add_light(shell->volume, cells, colored, pieces, tc_and_not(walking[i], lost[i]), z[i], s[i], packet[i].from, &packet[i], worker);
     TC_EACH_PACKET {
       if (++packet[i].steps % 64 == 0) tc_lights_end_block(colored, &packet[i].lights);
       const TcMask opaque = tc_lights_opaque(colored, &packet[i].lights, pieces, worker->tolerance.opaque, active[i]);
@@ -165,10 +171,12 @@ TC_INLINE void advance(const TcShell *shell, const bool wide, const bool cells, 
         packet[i].stopped |= tc_bits(opaque);
         worker->lost += __builtin_popcount(tc_bits(lost[i]));
         active[i] = tc_and_not(active[i], tc_or(lost[i], opaque));
+        packet[i].parts.pending = tc_and(packet[i].parts.pending, active[i]);
         packet[i].active &= ~(tc_bits(lost[i]) | tc_bits(opaque));
         halt = halt || !packet[i].active;
       }
-      active[i] = tc_and_not(active[i], tc_mask_of(at_shell(shell, active[i], packet[i].walks.cell)));
+      const TcMask ready = cells ? active[i] : tc_and_not(active[i], packet[i].parts.pending);
+      active[i] = tc_and_not(active[i], tc_mask_of(at_shell(shell, ready, packet[i].walks.cell)));
       const unsigned ended = packet[i].active & ~tc_bits(active[i]);
       halt = halt || (ended && (ended == packet[i].active || ended & packet[i].again));
     }

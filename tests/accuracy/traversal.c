@@ -176,7 +176,7 @@ static void caster_begin(Caster *caster, const Soup *soup) {
   }
   tetcast_field_destroy(&field);
   caster->gray = gray_of(caster->fixture.context, 1e-9); /* thin: nothing ends early, the depth is the length */
-  for (int i = 0; i < TC_PACKETS * TC_PACKET; ++i) caster->worker.spans[i].context = caster->fixture.context;
+  for (int i = 0; i < TC_RAYS; ++i) caster->worker.spans[i].context = caster->fixture.context;
   caster->worker.tolerance = tc_tolerance_begin(&caster->gray->pieces, 0);
 }
 
@@ -214,7 +214,7 @@ static void flush(Caster *caster) {
 
 static void caster_end(Caster *caster) {
   flush(caster);
-  for (int i = 0; i < TC_PACKETS * TC_PACKET; ++i) tc_spans_clear(&caster->worker.spans[i]);
+  for (int i = 0; i < TC_RAYS; ++i) tc_spans_clear(&caster->worker.spans[i]);
   tetcast_transfer_function_destroy(&caster->gray);
   for (int i = 0; i < 2; ++i) tetcast_volume_destroy(&caster->volume[i]);
   tetcast_mesh_destroy(&caster->mesh);
