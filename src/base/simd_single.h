@@ -96,6 +96,42 @@ TC_INLINE TcWord tcf_half_words(TcWords a, int i) {
 
 #endif
 
+/* Four floats from each of base[offset[i]], base[offset[i] + 4], …, as tc_load_records(). */
+TC_INLINE void tcf_load_records(const float *base, TcWords offset, const int count, TcFloats component[]) {
+  uint32_t at[TC_SINGLES];
+  memcpy(at, &offset, sizeof at);
+  for (int k = 0; k < count; ++k) {
+    TcNarrow r[TC_SINGLES];
+    for (int i = 0; i < TC_SINGLES; ++i) memcpy(&r[i], base + (size_t)at[i] + 4 * k, sizeof r[i]);
+    TcFloats *c = component + 4 * k;
+#if defined(TC_SIMD_AVX512)
+    __m512 four[4]; /* lanes 4 i … 4 i + 3 */
+    for (int i = 0; i < 4; ++i) {
+      four[i] = _mm512_insertf32x4(_mm512_castps128_ps512((__m128)r[4 * i]), (__m128)r[4 * i + 1], 1);
+      four[i] = _mm512_insertf32x4(four[i], (__m128)r[4 * i + 2], 2);
+      four[i] = _mm512_insertf32x4(four[i], (__m128)r[4 * i + 3], 3);
+    }
+    const __m512i first = _mm512_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29);
+    const __m512i last = _mm512_setr_epi32(2, 6, 10, 14, 18, 22, 26, 30, 3, 7, 11, 15, 19, 23, 27, 31);
+    const __m512 low01 = _mm512_permutex2var_ps(four[0], first, four[1]), high01 = _mm512_permutex2var_ps(four[2], first, four[3]);
+    const __m512 low23 = _mm512_permutex2var_ps(four[0], last, four[1]), high23 = _mm512_permutex2var_ps(four[2], last, four[3]);
+    c[0] = (TcFloats)_mm512_shuffle_f32x4(low01, high01, 0x44);
+    c[1] = (TcFloats)_mm512_shuffle_f32x4(low01, high01, 0xEE);
+    c[2] = (TcFloats)_mm512_shuffle_f32x4(low23, high23, 0x44);
+    c[3] = (TcFloats)_mm512_shuffle_f32x4(low23, high23, 0xEE);
+#else
+    __m256 pair[4]; /* lanes i and i + 4: a 4 × 4 transpose in each half */
+    for (int i = 0; i < 4; ++i) pair[i] = _mm256_insertf128_ps(_mm256_castps128_ps256((__m128)r[i]), (__m128)r[i + 4], 1);
+    const __m256 a = _mm256_unpacklo_ps(pair[0], pair[1]), b = _mm256_unpackhi_ps(pair[0], pair[1]);
+    const __m256 d = _mm256_unpacklo_ps(pair[2], pair[3]), e = _mm256_unpackhi_ps(pair[2], pair[3]);
+    c[0] = (TcFloats)_mm256_shuffle_ps(a, d, 0x44);
+    c[1] = (TcFloats)_mm256_shuffle_ps(a, d, 0xEE);
+    c[2] = (TcFloats)_mm256_shuffle_ps(b, e, 0x44);
+    c[3] = (TcFloats)_mm256_shuffle_ps(b, e, 0xEE);
+#endif
+  }
+}
+
 TC_INLINE TcFloats tcf_abs(TcFloats a) { return (TcFloats)((TcWords)a & INT32_MAX); }
 TC_INLINE int tcf_any(TcFloatMask m) { return tcf_bits(m) != 0; }
 

@@ -49,7 +49,7 @@ bool tc_tolerance_allow_single(const TcPieces *pieces, const TcExtent *extent, d
   const double u = 0x1p-24, radius = extent->radius, color = fmax(1, result->color);
   double value = extent->value;
   Slopes slopes;
-  if (pieces->narrow || !find_slopes(pieces, value, &slopes)) return false;
+  if (pieces->narrow || pieces->count > 1 << 20 || !find_slopes(pieces, value, &slopes)) return false;
   for (int64_t i = 0; i < pieces->count; ++i) {
     if (pieces->knots[i] >= -extent->value && pieces->knots[i] <= extent->value) value = fmax(value, fabs(pieces->knots[i]));
   }

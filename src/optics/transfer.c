@@ -2,6 +2,7 @@
 #include "optics/transfer.h"
 
 #include <inttypes.h>
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -108,6 +109,14 @@ static void make_row(const TcPieces *pieces, int64_t i, double row[TC_PIECE_WORD
   memcpy(row, words, sizeof words);
 }
 
+static void make_single_row(const TcPiece *piece, const double row[TC_PIECE_WORDS], float single[TC_PIECE_WORDS]) {
+  const TcOptics *a = &piece->at_low, *b = &piece->at_high;
+  const double words[TC_PIECE_WORDS] = {row[0], row[1], row[2], a->extinction, (b->extinction - a->extinction) * piece->inverse, a->color[0],
+                                        a->color[1], a->color[2], (b->color[0] - a->color[0]) * piece->inverse,
+                                        (b->color[1] - a->color[1]) * piece->inverse, (b->color[2] - a->color[2]) * piece->inverse, row[14], row[15]};
+  for (int k = 0; k < TC_PIECE_WORDS; ++k) single[k] = (float)fmax(-FLT_MAX, fmin(words[k], FLT_MAX)); /* beyond: not used (tolerance.h) */
+}
+
 /* What follows from the pieces as they are. */
 static void look_at_pieces(TetcastTransferFunction *transfer) {
   TcPieces *pieces = &transfer->pieces;
@@ -136,6 +145,7 @@ static void look_at_pieces(TetcastTransferFunction *transfer) {
       if (piece->at_low.color[k] != pieces->largest[k] || piece->at_high.color[k] != pieces->largest[k]) pieces->one_color = false;
     }
     make_row(pieces, i, transfer->row[i]);
+    make_single_row(piece, transfer->row[i], transfer->single_row[i]);
   }
 }
 
@@ -156,7 +166,8 @@ static void make_pieces(TetcastTransferFunction *transfer) {
     piece->constant = a->extinction == b->extinction && a->color[0] == b->color[0] && a->color[1] == b->color[1] &&
                       a->color[2] == b->color[2];
   }
-  transfer->pieces = (TcPieces){.count = n, .knots = transfer->knots, .pieces = transfer->piece, .rows = transfer->row};
+  transfer->pieces = (TcPieces){.count = n, .knots = transfer->knots, .pieces = transfer->piece, .rows = transfer->row,
+                                 .single_rows = transfer->single_row};
   look_at_pieces(transfer);
 }
 
@@ -208,7 +219,8 @@ TetcastStatus tc_transfer_create(TetcastContext *context, const TetcastTransferF
       !tc_allocate_array(context, (void **)&transfer->extinction, count, 2 * sizeof(double), "transfer function") ||
       !tc_allocate_array(context, (void **)&transfer->knots, most, sizeof(double), "transfer function") ||
       !tc_allocate_array(context, (void **)&transfer->piece, most + 1, sizeof *transfer->piece, "transfer function") ||
-      !tc_allocate_array(context, (void **)&transfer->row, most + 1, sizeof *transfer->row, "transfer function")) {
+      !tc_allocate_array(context, (void **)&transfer->row, most + 1, sizeof *transfer->row, "transfer function") ||
+      !tc_allocate_array(context, (void **)&transfer->single_row, most + 1, sizeof *transfer->single_row, "transfer function")) {
     tc_transfer_destroy(transfer);
     return TETCAST_ERROR_MEMORY;
   }
@@ -258,5 +270,6 @@ void tc_transfer_destroy(TetcastTransferFunction *transfer) {
   tc_release(context, transfer->knots);
   tc_release(context, transfer->piece);
   tc_release(context, transfer->row);
+  tc_release(context, transfer->single_row);
   tc_release(context, transfer);
 }

@@ -25,12 +25,16 @@ typedef struct TcPiece {
  * extinction at low, at high; colour at low; at high; the next pieces above and below (count + 1, −1: none), several without extinction passed. */
 enum { TC_PIECE_WORDS = 16 };
 
+/* The same in single precision: low, high; the former for interpolation, 0 if the piece is constant; extinction there, and its slope; colour there,
+ * and its slope; the next pieces above and below; three words unused. */
+
 /* count + 1 pieces between count distinct knots: piece i ends at knot[i], piece i + 1 begins there. */
 typedef struct TcPieces {
   int64_t count;
   const double *knots; /* [count], ascending */
   const TcPiece *pieces;
-  double (*rows)[TC_PIECE_WORDS]; /* the same for packets */
+  double (*rows)[TC_PIECE_WORDS];      /* the same for packets */
+  float (*single_rows)[TC_PIECE_WORDS]; /* … in single precision */
   double largest[3]; /* of each colour component, where there is any extinction */
   bool one_color;    /* the colour is `largest` wherever there is any extinction */
   bool narrow;       /* a piece is so narrow that `inverse` overflows */
@@ -44,6 +48,7 @@ struct TetcastTransferFunction {
   double *knots;
   TcPiece *piece;
   double (*row)[TC_PIECE_WORDS];
+  float (*single_row)[TC_PIECE_WORDS];
   TcPieces pieces;
 };
 

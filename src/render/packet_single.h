@@ -19,10 +19,18 @@ typedef struct SinglePoints {
   TcWords id;
 } SinglePoints;
 
-/* A piece of the transfer function: extinction and colour at `low`, and how they rise. */
-typedef struct SinglePiece {
-  float low, least, most, extinction, rise, color[3], color_rise[3];
-} SinglePiece;
+/* A lane's piece each, as TcPieces.single_rows has it. */
+typedef struct SinglePieces {
+  TcFloats low, high, from, extinction, rise, color[3], color_rise[3], above, below, unused[3];
+} SinglePieces;
+
+/* TcParts */
+typedef struct SingleParts {
+  SinglePieces piece;
+  TcWords at;
+  TcFloats length, s0, done;
+  TcFloatMask pending, filled;
+} SingleParts;
 
 typedef struct Single {
   Packet *packet; /* [2] */
@@ -34,8 +42,8 @@ typedef struct Single {
   TcFloats variation;                      /* Σ |s₁ − s₀| */
   TcFloats shift;                          /* Σ of how far depths at the shell are from those in double precision */
   float margin;                            /* what rounding may hide of each */
-  int64_t piece, steps;
-  SinglePiece here; /* `piece` */
+  int64_t steps;
+  SingleParts parts;
   unsigned active, starting, ended, again, stopped, redo;
   unsigned met; /* lanes whose rays meet the mesh */
 } Single;
@@ -154,18 +162,6 @@ static __attribute__((noinline)) void single_end_block(const bool colored, Singl
   single_begin_block(single);
 }
 
-static SinglePiece single_piece(const TcPiece *piece) {
-  const double inverse = piece->inverse; /* 0 where it is constant */
-  SinglePiece single = {.low = piece->constant ? 0 : (float)piece->low, .least = (float)piece->low, .most = (float)piece->high,
-                        .extinction = (float)piece->at_low.extinction,
-                        .rise = (float)((piece->at_high.extinction - piece->at_low.extinction) * inverse)};
-  for (int k = 0; k < 3; ++k) {
-    single.color[k] = (float)piece->at_low.color[k];
-    single.color_rise[k] = (float)((piece->at_high.color[k] - piece->at_low.color[k]) * inverse);
-  }
-  return single;
-}
-
 /* Segments too deep for tc_segment_thin(). */
 static __attribute__((noinline)) void single_deep(TcFloatMask mask, const TcFloats ends[2], TcFloats weight[3]) {
   TcSegments segments[2];
@@ -192,11 +188,11 @@ TC_INLINE void single_thin(TcFloats t, TcFloats d, TcFloats weight[3]) {
 }
 
 /* Parts of segments in one piece; of length 0 in lanes not in `mask`. */
-TC_INLINE void single_add_part(const bool colored, Single *single, const SinglePiece *piece, float thin, TcFloatMask mask, TcFloats length,
+TC_INLINE void single_add_part(const bool colored, Single *single, const SinglePieces *piece, float thin, TcFloatMask mask, TcFloats length,
                                TcFloats s0, TcFloats s1) {
-  const TcFloats near = s0 - piece->low, far = s1 - piece->low, zero = tcf_set(0);
-  const TcFloats a = tcf_max(tcf_madd(near, tcf_set(piece->rise), tcf_set(piece->extinction)), zero) * length;
-  const TcFloats a1 = tcf_max(tcf_madd(far, tcf_set(piece->rise), tcf_set(piece->extinction)), zero) * length;
+  const TcFloats near = s0 - piece->from, far = s1 - piece->from, zero = tcf_set(0);
+  const TcFloats a = tcf_max(tcf_madd(near, piece->rise, piece->extinction), zero) * length;
+  const TcFloats a1 = tcf_max(tcf_madd(far, piece->rise, piece->extinction), zero) * length;
   const TcFloats t = 0.5F * (a + a1);
   single->depth += t;
   if (!colored) return;
@@ -210,58 +206,76 @@ TC_INLINE void single_add_part(const bool colored, Single *single, const SingleP
   const TcFloats w0 = single->transmittance * weight[0], w1 = single->transmittance * weight[1];
   const TcFloats sum = w0 + w1, moment = tcf_madd(w0, near, w1 * far);
   for (int k = 0; k < 3; ++k) {
-    single->color[k] = tcf_madd(sum, tcf_set(piece->color[k]), tcf_madd(moment, tcf_set(piece->color_rise[k]), single->color[k]));
+    single->color[k] = tcf_madd(sum, piece->color[k], tcf_madd(moment, piece->color_rise[k], single->color[k]));
   }
   single->transmittance *= weight[2];
 }
 
-static float least_of(TcFloats s, unsigned lanes) {
-  float least = INFINITY;
-  for (; lanes; lanes &= lanes - 1) {
-    const float value = s[__builtin_ctz(lanes)];
-    least = value < least ? value : least;
-  }
-  return least;
+static void single_load_pieces(const TcPieces *pieces, SingleParts *parts) {
+  TcFloats word[TC_PIECE_WORDS];
+  _Static_assert(sizeof parts->piece == sizeof word, "loaded as records of four");
+  tcf_load_records(pieces->single_rows[0], parts->at * TC_PIECE_WORDS, TC_PIECE_WORDS / 4, word);
+  memcpy(&parts->piece, word, sizeof parts->piece);
+  const TcFloats zero = tcf_set(0);
+  parts->filled = tcf_or(tcf_lt(zero, parts->piece.extinction), tcf_lt(zero, parts->piece.rise));
 }
 
-/* Segments that lie in several pieces, or not all in one: piece by piece. segment: length, s₀, s₁. */
-static __attribute__((noinline)) void single_split(const bool colored, Single *single, const TcPieces *pieces, float thin, TcFloatMask mask,
-                                                   const TcFloats segment[3]) {
-  const unsigned lanes = tcf_bits(mask);
-  const TcFloats zero = tcf_set(0), one = tcf_set(1), s0 = tcf_select(mask, segment[1], zero), s1 = tcf_select(mask, segment[2], zero);
-  const TcFloats whole = tcf_abs(s1 - s0);
-  const TcFloatMask rises = tcf_le(s0, s1);
-  const float low = least_of(tcf_min(s0, s1), lanes), high = -least_of(-tcf_max(s0, s1), lanes);
-  const int64_t first = tc_piece_above(pieces, (double)low), last = tc_piece_above(pieces, (double)high);
-  /* Lanes that rise come from below: one turn for them, one for those that fall. */
-  for (int turn = 0; turn < 2; ++turn) {
-    const TcFloatMask ours = turn ? tcf_and_not(mask, rises) : tcf_and(mask, rises);
-    if (!tcf_any(ours)) continue;
-    for (int64_t i = 0; i <= last - first; ++i) {
-      const SinglePiece piece = single_piece(&pieces->pieces[turn ? last - i : first + i]);
-      const TcFloats near = tcf_max(tcf_min(s0, tcf_set(piece.most)), tcf_set(piece.least));
-      const TcFloats far = tcf_max(tcf_min(s1, tcf_set(piece.most)), tcf_set(piece.least));
-      /* A segment of one value lies in the piece that begins at it, or holds it. */
-      const TcFloatMask flat = tcf_and_not(tcf_and(tcf_le(tcf_set(piece.least), s0), tcf_lt(s0, tcf_set(piece.most))), tcf_lt(zero, whole));
-      const TcFloats share = tcf_select(flat, one, tcf_abs(far - near) / tcf_select(tcf_lt(zero, whole), whole, one));
-      const TcFloatMask in = tcf_and(ours, tcf_lt(zero, share));
-      if (!tcf_any(in)) continue;
-      single_add_part(colored, single, &piece, thin, in, tcf_select(in, segment[0] * share, zero), near, far);
+/* tc_parts_locate(): there are no jumps, so of two pieces that meet at a knot either will do. */
+static __attribute__((noinline)) void single_locate(const TcPieces *pieces, TcFloatMask mask, SingleParts *parts) {
+  TcWords at = {0};
+  if (pieces->count <= 32) {
+    for (int64_t i = 0; i < pieces->count; ++i) {
+      at += tcf_select_words(tcf_le(tcf_set((float)pieces->knots[i]), parts->done), (TcWords){0} + 1, (TcWords){0});
+    }
+  } else {
+    for (unsigned lanes = tcf_bits(mask); lanes; lanes &= lanes - 1) {
+      const int i = __builtin_ctz(lanes);
+      at[i] = (uint32_t)tc_piece_above(pieces, (double)parts->done[i]);
     }
   }
-  const int64_t piece = tc_piece_above(pieces, (double)s1[__builtin_ctz(lanes)]);
-  if (piece == single->piece) return;
-  single->piece = piece;
-  single->here = single_piece(&pieces->pieces[piece]);
+  parts->at = tcf_select_words(mask, at, parts->at);
+  single_load_pieces(pieces, parts);
 }
 
-static __attribute__((noinline)) void single_split_colored(Single *single, const TcPieces *pieces, float thin, TcFloatMask mask,
-                                                           const TcFloats segment[3]) {
-  single_split(true, single, pieces, thin, mask, segment);
+/* tc_parts_next() */
+static __attribute__((noinline)) void single_next(const TcPieces *pieces, TcFloatMask crossing, const TcFloats *end, SingleParts *parts) {
+  typedef int32_t Ints __attribute__((vector_size(4 * TC_SINGLES)));
+  const TcFloats s1 = *end;
+  const TcFloatMask up = tcf_le(parts->s0, s1);
+  const TcFloats next = tcf_select(up, parts->piece.above, parts->piece.below);
+  const TcFloatMask valid = tcf_and(crossing, tcf_and(tcf_le(tcf_set(0), next), tcf_le(next, tcf_set((float)pieces->count))));
+  parts->at = tcf_select_words(valid, (TcWords)__builtin_convertvector(next, Ints), parts->at);
+  single_load_pieces(pieces, parts);
+  const SinglePieces *piece = &parts->piece;
+  const TcFloatMask reached = tcf_or(tcf_and(up, tcf_lt(piece->low, s1)), tcf_and_not(tcf_lt(s1, piece->high), up));
+  const TcFloatMask further = tcf_or(tcf_and(up, tcf_lt(piece->high, s1)), tcf_and_not(tcf_lt(s1, piece->low), up));
+  parts->pending = tcf_and(tcf_and(valid, reached), tcf_or(parts->filled, further));
+  parts->done = tcf_select(parts->pending, tcf_select(up, piece->low, piece->high), parts->done);
 }
 
-static __attribute__((noinline)) void single_split_depth(Single *single, const TcPieces *pieces, TcFloatMask mask, const TcFloats segment[3]) {
-  single_split(false, single, pieces, 0, mask, segment);
+/* tc_lights_add() */
+TC_INLINE void single_add(const bool colored, Single *single, const TcPieces *pieces, float thin, TcFloatMask mask, TcFloats s1) {
+  SingleParts *parts = &single->parts;
+  const SinglePieces *piece = &parts->piece;
+  const TcFloats zero = tcf_set(0);
+  const TcFloatMask here = tcf_and(tcf_le(piece->low, tcf_min(parts->done, s1)), tcf_le(tcf_max(parts->done, s1), piece->high));
+  TcFloatMask crossing = tcf_mask_of(0);
+  TcFloats length = parts->length, end = s1;
+  if (tcf_any(tcf_or(tcf_and_not(mask, here), parts->pending))) {
+    const TcFloatMask up = tcf_le(parts->s0, s1);
+    const TcFloatMask misplaced = tcf_and_not(mask, tcf_and(tcf_le(piece->low, parts->done), tcf_le(parts->done, piece->high)));
+    if (tcf_any(misplaced)) single_locate(pieces, misplaced, parts);
+    crossing = tcf_and(mask, tcf_or(tcf_and(up, tcf_lt(piece->high, s1)), tcf_and_not(tcf_lt(s1, piece->low), up)));
+    end = tcf_select(crossing, tcf_select(up, piece->high, piece->low), s1);
+    const TcFloats whole = tcf_abs(s1 - parts->s0);
+    length *= tcf_select(tcf_lt(zero, whole), tcf_abs(end - parts->done) / whole, tcf_set(1));
+  }
+  if (tcf_any(tcf_and(mask, parts->filled))) {
+    single_add_part(colored, single, piece, thin, mask, tcf_select(mask, length, zero), tcf_select(mask, parts->done, piece->from),
+                    tcf_select(mask, end, piece->from));
+  }
+  parts->pending = tcf_mask_of(0);
+  if (tcf_any(crossing)) single_next(pieces, crossing, &s1, parts);
 }
 
 /* add_light(): from depth z and scalar s on. */
@@ -276,18 +290,12 @@ TC_INLINE void single_add_light(const bool colored, const TcPieces *pieces, TcFl
     const TcFloats w = (from - z) / (single->z - z);
     s = tcf_select(behind, (1 - w) * s + w * single->s, s);
   }
-  const TcFloats length = tcf_select(moved, single->z - from, zero), s1 = single->s;
-  single->variation += tcf_select(moved, tcf_abs(s1 - s), zero);
-  const SinglePiece *piece = &single->here;
-  const TcFloatMask here = tcf_and(tcf_le(tcf_set(piece->least), tcf_min(s, s1)), tcf_le(tcf_max(s, s1), tcf_set(piece->most)));
-  if (!tcf_any(tcf_and_not(moved, here))) {
-    single_add_part(colored, single, piece, (float)worker->tolerance.thin, moved, length, tcf_select(moved, s, tcf_set(piece->low)),
-                    tcf_select(moved, s1, tcf_set(piece->low)));
-    return;
-  }
-  const TcFloats segment[3] = {length, s, s1};
-  if (colored) single_split_colored(single, pieces, (float)worker->tolerance.thin, moved, segment);
-  else single_split_depth(single, pieces, moved, segment);
+  SingleParts *parts = &single->parts;
+  single->variation += tcf_select(moved, tcf_abs(single->s - s), zero);
+  parts->length = tcf_select(moved, single->z - from, parts->length);
+  parts->s0 = tcf_select(moved, s, parts->s0);
+  parts->done = tcf_select(moved, s, parts->done);
+  single_add(colored, single, pieces, (float)worker->tolerance.thin, tcf_or(moved, parts->pending), single->s);
 }
 
 /* ── setting out, arriving ── */
@@ -377,16 +385,17 @@ TC_INLINE void single_advance(const TcShell *shell, const bool wide, const bool 
   while (!halt) {
     SingleStep step[TC_PACKETS];
     TcFloats z[TC_PACKETS], s[TC_PACKETS];
-    TcFloatMask lost[TC_PACKETS];
+    TcFloatMask walking[TC_PACKETS], lost[TC_PACKETS];
     TC_EACH_PACKET {
+      walking[i] = tcf_and_not(active[i], single[i].parts.pending);
       z[i] = single[i].z;
       s[i] = single[i].s;
-      single[i].from = tcf_select_words(active[i], single[i].cell, single[i].from);
-      single_step_cells(shell->volume, active[i], &single[i], &step[i]);
+      single[i].from = tcf_select_words(walking[i], single[i].cell, single[i].from);
+      single_step_cells(shell->volume, walking[i], &single[i], &step[i]);
     }
     TC_EACH_PACKET step[i].q = single_project(shell->volume, wide, single[i].packet, step[i].q.id);
-    TC_EACH_PACKET lost[i] = single_step_out(active[i], &step[i], &single[i]);
-    TC_EACH_PACKET single_add_light(colored, pieces, tcf_and_not(active[i], lost[i]), z[i], s[i], &single[i], worker);
+    TC_EACH_PACKET lost[i] = single_step_out(walking[i], &step[i], &single[i]);
+    TC_EACH_PACKET single_add_light(colored, pieces, tcf_and_not(walking[i], lost[i]), z[i], s[i], &single[i], worker);
     TC_EACH_PACKET {
       if (++single[i].steps % 64 == 0) single_end_block(colored, &single[i]);
       const TcFloatMask opaque = tcf_and(active[i], tcf_lt(tcf_set((float)worker->tolerance.opaque), single[i].before + single[i].depth));
@@ -394,10 +403,12 @@ TC_INLINE void single_advance(const TcShell *shell, const bool wide, const bool 
         single[i].stopped |= tcf_bits(opaque);
         single[i].redo |= tcf_bits(lost[i]);
         active[i] = tcf_and_not(active[i], tcf_or(lost[i], opaque));
+        single[i].parts.pending = tcf_and(single[i].parts.pending, active[i]);
         single[i].active &= ~(tcf_bits(lost[i]) | tcf_bits(opaque));
         halt = halt || !single[i].active;
       }
-      active[i] = tcf_and_not(active[i], tcf_mask_of(single_at_shell(shell, active[i], single[i].cell)));
+      const TcFloatMask ready = tcf_and_not(active[i], single[i].parts.pending);
+      active[i] = tcf_and_not(active[i], tcf_mask_of(single_at_shell(shell, ready, single[i].cell)));
       const unsigned ended = single[i].active & ~tcf_bits(active[i]);
       halt = halt || (ended && (ended == single[i].active || ended & single[i].again));
     }
@@ -408,12 +419,12 @@ TC_INLINE void single_advance(const TcShell *shell, const bool wide, const bool 
   }
 }
 
-static void single_begin(const TcPieces *pieces, float margin, Packet packet[2], Single *single) {
+static void single_begin(float margin, Packet packet[2], Single *single) {
   memset(single, 0, sizeof *single);
   single->packet = packet;
   single->margin = margin;
   single->starting = single->met = packet[0].starting | packet[1].starting << TC_LANES;
-  single->here = single_piece(&pieces->pieces[0]);
+  single->parts.piece.low = tcf_set(1); /* and `high` is 0: nothing is there */
   single_begin_block(single);
 }
 
@@ -466,7 +477,7 @@ static void single_end(const TcShell *shell, const TcPieces *pieces, TcWorker *w
 TC_INLINE void single_run(const TcShell *shell, const bool wide, const bool colored, const TcPieces *pieces, TcWorker *worker, Packet *packet) {
   Single single[TC_PACKETS];
   const float margin = (float)(0x1p-22 * shell->volume->radius);
-  TC_EACH_PACKET single_begin(pieces, margin, packet + 2 * i, &single[i]);
+  TC_EACH_PACKET single_begin(margin, packet + 2 * i, &single[i]);
   while (single[0].starting || single[0].active || single[1].starting || single[1].active) {
     single_advance(shell, wide, colored, pieces, worker, single);
   }
