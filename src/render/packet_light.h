@@ -86,20 +86,16 @@ TC_INLINE void tc_load_pieces(const TcPieces *pieces, TcParts *parts) {
   parts->filled = tc_or(tc_lt(tc_set(0), parts->piece.k0), tc_lt(tc_set(0), parts->piece.k1));
 }
 
-/* The lanes of `mask` find the pieces where they are: at a knot that before which what is left of the segment lies; a segment of one value, the
- * later. `up`: those whose values do not fall. */
-static __attribute__((noinline)) void tc_parts_locate(const TcPieces *pieces, TcMask mask, TcMask up, TcParts *parts) {
+/* The lanes of `mask` find the pieces where they are, at a knot the later: from there a lane whose values fall goes on to the one before at once. */
+static __attribute__((noinline)) void tc_parts_locate(const TcPieces *pieces, TcMask mask, TcParts *parts) {
   const TcVec zero = tc_set(0), one = tc_set(1);
   TcVec at = zero;
   if (pieces->count <= 32) {
-    for (int64_t i = 0; i < pieces->count; ++i) {
-      const TcVec knot = tc_set(pieces->knots[i]);
-      at += tc_select(tc_or(tc_lt(knot, parts->done), tc_and(up, tc_eq(knot, parts->done))), one, zero);
-    }
+    for (int64_t i = 0; i < pieces->count; ++i) at += tc_select(tc_le(tc_set(pieces->knots[i]), parts->done), one, zero);
   } else {
     for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
       const int i = __builtin_ctz(lanes);
-      at[i] = (double)(tc_bits(up) >> i & 1 ? tc_piece_above(pieces, parts->done[i]) : tc_piece_below(pieces, parts->done[i]));
+      at[i] = (double)tc_piece_above(pieces, parts->done[i]);
     }
   }
   parts->at = tc_select(mask, at, parts->at);
@@ -114,7 +110,7 @@ TC_INLINE TcMask tc_parts_limit(const TcPieces *pieces, TcMask mask, TcParts *pa
   const TcMask rising = tc_and(up, tc_and(tc_le(piece->low, done), tc_lt(done, piece->high)));
   const TcMask falling = tc_and_not(tc_and(tc_lt(piece->low, done), tc_le(done, piece->high)), up);
   const TcMask misplaced = tc_and_not(mask, tc_or(rising, falling));
-  if (tc_any(misplaced)) tc_parts_locate(pieces, misplaced, up, parts);
+  if (tc_any(misplaced)) tc_parts_locate(pieces, misplaced, parts);
   const TcMask crossing = tc_and(mask, tc_or(tc_and(up, tc_lt(piece->high, s1)), tc_and_not(tc_lt(s1, piece->low), up)));
   part[1] = tc_select(crossing, tc_select(up, piece->high, piece->low), s1);
   /* From differences of scalars, not of positions along the segment: nothing cancels. */
@@ -161,7 +157,7 @@ TC_INLINE void tc_lights_add_constant(const bool colored, TcLights *lights, TcPa
   const TcMask here = tc_and(tc_le(piece->low, s), tc_lt(s, piece->high));
   if (tc_any(tc_and_not(mask, here))) {
     parts->done = s;
-    tc_parts_locate(pieces, mask, mask, parts);
+    tc_parts_locate(pieces, mask, parts);
   }
   if (!tc_any(tc_and(mask, parts->filled))) return;
   s = tc_select(mask, s, piece->from);
