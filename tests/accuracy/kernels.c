@@ -17,30 +17,18 @@ static TetcastVolume *random_volume(TetcastContext *context, Cube *cube, int i, 
     if (i % 4 == 3 && uniform(seed) < 0.02) values[j] = NAN;
     if (i % 5 == 4) values[j] = floor(4 * values[j]) / 4; /* whole cells on a knot */
   }
-  TetcastMesh *mesh = cube_mesh(context, cube);
-  float *narrow = malloc((size_t)cube->vertex_count * 3 * sizeof *narrow), *narrow_values = malloc((size_t)count * sizeof *narrow_values);
-  TetcastField *field = field_of(context, values, count, association);
-  if (i % 2) { /* stored in single precision: the mesh and the field have to be */
-    for (int64_t j = 0; j < 3 * cube->vertex_count; ++j) narrow[j] = (float)cube->vertices[j];
-    for (int64_t j = 0; j < count; ++j) narrow_values[j] = (float)values[j];
-    TetcastMeshDesc mesh_desc = tetcast_mesh_desc_default();
-    mesh_desc.vertices = (TetcastArray){narrow, TETCAST_TYPE_FLOAT32, cube->vertex_count, 0};
-    mesh_desc.tetrahedra = (TetcastArray){cube->cells, TETCAST_TYPE_INT64, cube->cell_count, 0};
-    TetcastFieldDesc field_desc = tetcast_field_desc_default();
-    field_desc.values = (TetcastArray){narrow_values, TETCAST_TYPE_FLOAT32, count, 0};
-    field_desc.association = association;
-    tetcast_mesh_destroy(&mesh);
+  TetcastVolume *volume;
+  if (i % 2) {
+    volume = narrow_volume(context, cube, values, count, association);
+  } else {
+    TetcastMesh *mesh = cube_mesh(context, cube);
+    TetcastField *field = field_of(context, values, count, association);
+    volume = volume_of(context, mesh, TETCAST_TRAVERSAL_SHELL);
+    assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
     tetcast_field_destroy(&field);
-    assert_int_equal(tetcast_mesh_create(context, &mesh_desc, &mesh), TETCAST_OK);
-    assert_int_equal(tetcast_field_create(context, &field_desc, &field), TETCAST_OK);
+    tetcast_mesh_destroy(&mesh);
   }
-  TetcastVolume *volume = volume_of(context, mesh, TETCAST_TRAVERSAL_SHELL);
-  assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
-  tetcast_field_destroy(&field);
-  tetcast_mesh_destroy(&mesh);
   free(values);
-  free(narrow);
-  free(narrow_values);
   return volume;
 }
 

@@ -87,29 +87,6 @@ static void turn(double p[3]) {
   memcpy(p, q, sizeof q);
 }
 
-/* As float, which a volume then stores. */
-static TetcastVolume *narrow_volume(TetcastContext *context, const Cube *cube) {
-  float *vertices = malloc((size_t)cube->vertex_count * 3 * sizeof *vertices), *values = malloc((size_t)cube->vertex_count * sizeof *values);
-  for (int64_t j = 0; j < 3 * cube->vertex_count; ++j) vertices[j] = (float)cube->vertices[j];
-  for (int64_t j = 0; j < cube->vertex_count; ++j) values[j] = (float)cube->values[j];
-  TetcastMeshDesc mesh_desc = tetcast_mesh_desc_default();
-  mesh_desc.vertices = (TetcastArray){vertices, TETCAST_TYPE_FLOAT32, cube->vertex_count, 0};
-  mesh_desc.tetrahedra = (TetcastArray){cube->cells, TETCAST_TYPE_INT64, cube->cell_count, 0};
-  TetcastFieldDesc field_desc = tetcast_field_desc_default();
-  field_desc.values = (TetcastArray){values, TETCAST_TYPE_FLOAT32, cube->vertex_count, 0};
-  TetcastMesh *mesh = NULL;
-  TetcastField *field = NULL;
-  assert_int_equal(tetcast_mesh_create(context, &mesh_desc, &mesh), TETCAST_OK);
-  assert_int_equal(tetcast_field_create(context, &field_desc, &field), TETCAST_OK);
-  TetcastVolume *volume = volume_of(context, mesh, TETCAST_TRAVERSAL_SHELL);
-  assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
-  tetcast_field_destroy(&field);
-  tetcast_mesh_destroy(&mesh);
-  free(vertices);
-  free(values);
-  return volume;
-}
-
 static TetcastCamera random_camera(int i, uint64_t *seed) {
   TetcastCamera camera = camera_of(0, 0, 0, 0, 0, 0);
   for (int k = 0; k < 3; ++k) {
@@ -140,7 +117,8 @@ static void bounds_hold(void **state) {
     }
     const bool eighths = i % 7 == 3; /* whole cells lie on a knot */
     for (int64_t j = 0; eighths && j < cube.vertex_count; ++j) cube.values[j] = floor(4 * cube.values[j]) / 4;
-    TetcastVolume *volume = i % 2 ? narrow_volume(fixture.context, &cube) : cube_volume(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
+    TetcastVolume *volume = i % 2 ? narrow_volume(fixture.context, &cube, cube.values, cube.vertex_count, TETCAST_POINT)
+                                  : cube_volume(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
     TetcastTransferFunction *transfer = continuous(fixture.context, &seed, power(&seed, -3, 2), eighths);
     const TetcastCamera camera = random_camera(i, &seed);
     single += check(fixture.context, volume, transfer, &camera, i % 3 ? 1e-2 : 1e-3, &used);

@@ -154,6 +154,31 @@ static inline TetcastVolume *cube_volume(TetcastContext *context, const Cube *cu
   return volume;
 }
 
+/* The cube with a field of `count` values, stored in single precision: both have to come as such. */
+static inline TetcastVolume *narrow_volume(TetcastContext *context, const Cube *cube, const double *values, int64_t count,
+                                           TetcastAssociation association) {
+  float *vertices = malloc((size_t)cube->vertex_count * 3 * sizeof *vertices), *narrow = malloc((size_t)count * sizeof *narrow);
+  for (int64_t i = 0; i < 3 * cube->vertex_count; ++i) vertices[i] = (float)cube->vertices[i];
+  for (int64_t i = 0; i < count; ++i) narrow[i] = (float)values[i];
+  TetcastMeshDesc mesh_desc = tetcast_mesh_desc_default();
+  mesh_desc.vertices = (TetcastArray){vertices, TETCAST_TYPE_FLOAT32, cube->vertex_count, 0};
+  mesh_desc.tetrahedra = (TetcastArray){cube->cells, TETCAST_TYPE_INT64, cube->cell_count, 0};
+  TetcastFieldDesc field_desc = tetcast_field_desc_default();
+  field_desc.values = (TetcastArray){narrow, TETCAST_TYPE_FLOAT32, count, 0};
+  field_desc.association = association;
+  TetcastMesh *mesh = NULL;
+  TetcastField *field = NULL;
+  assert_int_equal(tetcast_mesh_create(context, &mesh_desc, &mesh), TETCAST_OK);
+  assert_int_equal(tetcast_field_create(context, &field_desc, &field), TETCAST_OK);
+  TetcastVolume *volume = volume_of(context, mesh, TETCAST_TRAVERSAL_SHELL);
+  assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
+  tetcast_field_destroy(&field);
+  tetcast_mesh_destroy(&mesh);
+  free(vertices);
+  free(narrow);
+  return volume;
+}
+
 /* Colour and extinction with several knots and a step, extinction times `factor`. */
 static inline TetcastTransferFunction *transfer_of(TetcastContext *context, double factor) {
   static const double color[][4] = {{0, 1, 0, 0}, {0.4, 0, 1, 0}, {0.4, 0.2, 0.3, 0.9}, {1, 0.5, 0.7, 1}};
