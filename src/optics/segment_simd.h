@@ -94,14 +94,19 @@ TC_INLINE TcSegments tc_segments_series(TcVec t, TcVec d, const TcSeries range) 
   return (TcSegments){0.5 * (alpha - difference), 0.5 * (alpha + difference), 1 - alpha};
 }
 
-/* tc_segment_thin(): T ≤ 1/2. */
+/* tc_segment_thin(), T ≤ 1/2, for vectors of any precision: the opacity, and the difference of the two weights. */
+#define TC_SEGMENTS_THIN(t, d, alpha, difference, madd, set)                                                                             \
+  do {                                                                                                                                   \
+    (alpha) = (t) * madd(-(t), madd(-(t), madd(-(t), set(1. / 24), set(1. / 6)), set(0.5)), set(1));                                     \
+    (difference) = madd(t, set(-1. / 40), madd(d, set(-1. / 90), set(1. / 12)));                                                         \
+    (difference) = madd(t, difference, madd(d, madd(d, set(1. / 210), set(1. / 20)), set(-1. / 6)));                                     \
+    (difference) = madd(t, difference, -(d) * madd(d, madd(d, set(1. / 840), set(1. / 60)), set(1. / 6)));                               \
+    (difference) = madd(t, difference, (d) * (madd(d, madd(d, madd(d, set(1. / 7560), set(1. / 420)), set(1. / 30)), set(1. / 3))));     \
+  } while (0)
+
 TC_INLINE TcSegments tc_segments_thin(TcVec t, TcVec d) {
-  const TcVec c0 = d * (tc_madd(d, tc_madd(d, tc_madd(d, tc_set(1. / 7560), tc_set(1. / 420)), tc_set(1. / 30)), tc_set(1. / 3)));
-  const TcVec c1 = -d * tc_madd(d, tc_madd(d, tc_set(1. / 840), tc_set(1. / 60)), tc_set(1. / 6));
-  const TcVec c2 = tc_madd(d, tc_madd(d, tc_set(1. / 210), tc_set(1. / 20)), tc_set(-1. / 6));
-  const TcVec c3 = tc_madd(d, tc_set(-1. / 90), tc_set(1. / 12));
-  const TcVec difference = tc_madd(t, tc_madd(t, tc_madd(t, tc_madd(t, tc_set(-1. / 40), c3), c2), c1), c0);
-  const TcVec alpha = t * tc_madd(-t, tc_madd(-t, tc_madd(-t, tc_set(1. / 24), tc_set(1. / 6)), tc_set(0.5)), tc_set(1));
+  TcVec alpha, difference;
+  TC_SEGMENTS_THIN(t, d, alpha, difference, tc_madd, tc_set);
   return (TcSegments){0.5 * (alpha - difference), 0.5 * (alpha + difference), 1 - alpha};
 }
 

@@ -45,17 +45,17 @@ static bool find_slopes(const TcPieces *pieces, double value, Slopes *slopes) {
   return true;
 }
 
-bool tc_tolerance_allow_single(const TcPieces *pieces, const TcExtent *extent, double tolerance, TcTolerance *result) {
-  const double u = 0x1p-24, radius = extent->radius, color = fmax(1, result->color);
-  double value = extent->value;
+bool tc_tolerance_allow_single(const TcPieces *pieces, const TcSteepness *field, double tolerance, TcTolerance *result) {
+  const double u = 0x1p-24, radius = field->radius, color = fmax(1, result->color);
+  double value = field->value;
   Slopes slopes;
   if (pieces->narrow || pieces->count > 1 << 20 || !find_slopes(pieces, value, &slopes)) return false;
   for (int64_t i = 0; i < pieces->count; ++i) {
-    if (pieces->knots[i] >= -extent->value && pieces->knots[i] <= extent->value) value = fmax(value, fabs(pieces->knots[i]));
+    if (pieces->knots[i] >= -field->value && pieces->knots[i] <= field->value) value = fmax(value, fabs(pieces->knots[i]));
   }
   const double most = 0x1p60; /* far from where numbers, or products of some of them, overflow */
   if (!(value < most && slopes.extinction < most && slopes.rise < most && slopes.color_rise < most && color < most)) return false;
-  const double moved = 1.5 * u * extent->diameter * extent->gradient + 32 * u * value + 0x1p-140, eta = 32 * u * radius;
+  const double moved = 1.5 * u * field->diameter * field->gradient + 32 * u * value + 0x1p-140, eta = 32 * u * radius;
   result->per_shift = 2.1 * color * slopes.extinction; /* e^ε < 1.1: see below */
   result->per_variation = eta * (2.1 * color * slopes.rise + slopes.color_rise * slopes.extinction);
   result->single_fixed = 2.1 * color * slopes.rise * 2 * radius * moved + result->per_shift * (2 * eta + 16 * u * radius) +

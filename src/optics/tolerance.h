@@ -38,16 +38,19 @@ typedef struct TcTolerance {
   double single_most, single_fixed, per_variation, per_shift;
 } TcTolerance;
 
-/* What of a volume and its point field the bound depends on: R, D, G and S above. */
-typedef struct TcExtent {
-  double radius, diameter, gradient, value;
-} TcExtent;
+/* What of a volume and its point field the bound depends on, all in scaled units. */
+typedef struct TcSteepness {
+  double radius;   /* R, of the volume */
+  double diameter; /* D, the longest edge */
+  double gradient; /* G, the largest of a cell's |∇s|; infinite if there is a value that is not finite, or a cell without volume */
+  double value;    /* S, the largest |s| */
+} TcSteepness;
 
 /* Spends half of `tolerance` on evaluation and half on ending rays; 0: exact. */
 TcTolerance tc_tolerance_begin(const TcPieces *pieces, double tolerance);
 
 /* Allows single precision to take `tolerance` beyond what is spent otherwise, if that looks like enough. */
-bool tc_tolerance_allow_single(const TcPieces *pieces, const TcExtent *extent, double tolerance, TcTolerance *result);
+bool tc_tolerance_allow_single(const TcPieces *pieces, const TcSteepness *field, double tolerance, TcTolerance *result);
 
 /* Bound on the error of each channel, after tc_light_end(): of a light of this opacity, made from `segments` segments. */
 double tc_tolerance_bound(const TcTolerance *tolerance, const TcLight *light, double alpha, int64_t segments);

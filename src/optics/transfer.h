@@ -21,12 +21,11 @@ typedef struct TcPiece {
   bool constant;
 } TcPiece;
 
-/* A piece as packets load it, all doubles: low, high; twice the same for interpolation, 0 if it is constant; inverse; 1 if it is constant, else 0;
- * extinction at low, at high; colour at low; at high; the next pieces above and below (count + 1, −1: none), several without extinction passed. */
+/* A piece as packets load it, all doubles: low, high; the same again for interpolation, 0 if it is constant; inverse; 1 if it is constant, else 0;
+ * extinction at low, at high; colour at low; at high; the next pieces above and below (count + 1, −1: none), several without extinction passed.
+ * In single precision: low, high; low again, 0 if it is constant; extinction there, and its slope; colour there, and its slope; the next
+ * pieces; three words unused. */
 enum { TC_PIECE_WORDS = 16 };
-
-/* The same in single precision: low, high; the former for interpolation, 0 if the piece is constant; extinction there, and its slope; colour there,
- * and its slope; the next pieces above and below; three words unused. */
 
 /* count + 1 pieces between count distinct knots: piece i ends at knot[i], piece i + 1 begins there. */
 typedef struct TcPieces {

@@ -102,7 +102,7 @@ static __attribute__((noinline)) void tc_parts_locate(const TcPieces *pieces, Tc
   tc_load_pieces(pieces, parts);
 }
 
-/* The lanes whose segments go on beyond the pieces that they are in. part: the length and the end of those parts that do not, or not any more. */
+/* The lanes whose segments go on beyond their pieces. part: length and end of the segments, which become those of their parts within the pieces. */
 TC_INLINE TcMask tc_parts_limit(const TcPieces *pieces, TcMask mask, TcParts *parts, TcVec part[2]) {
   const TcLanePieces *piece = &parts->piece;
   const TcVec done = parts->done, s1 = part[1], whole = tc_abs(s1 - parts->s0);

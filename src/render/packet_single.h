@@ -53,6 +53,7 @@ typedef struct SingleStep {
   SinglePoints q;
 } SingleStep;
 
+#define TC_SINGLE_CONSTANT(x) tcf_set((float)(x))
 #define EACH_HALF TC_UNROLLED for (int h = 0; h < 2; ++h)
 
 /* ── the walk ── */
@@ -174,14 +175,9 @@ static __attribute__((noinline)) void single_deep(TcFloatMask mask, const TcFloa
   weight[2] = tcf_join((const TcVec[]){segments[0].transmittance, segments[1].transmittance});
 }
 
-/* tc_segment_thin() */
 TC_INLINE void single_thin(TcFloats t, TcFloats d, TcFloats weight[3]) {
-  const TcFloats c0 = d * (tcf_madd(d, tcf_madd(d, tcf_madd(d, tcf_set(1.F / 7560), tcf_set(1.F / 420)), tcf_set(1.F / 30)), tcf_set(1.F / 3)));
-  const TcFloats c1 = -d * tcf_madd(d, tcf_madd(d, tcf_set(1.F / 840), tcf_set(1.F / 60)), tcf_set(1.F / 6));
-  const TcFloats c2 = tcf_madd(d, tcf_madd(d, tcf_set(1.F / 210), tcf_set(1.F / 20)), tcf_set(-1.F / 6));
-  const TcFloats c3 = tcf_madd(d, tcf_set(-1.F / 90), tcf_set(1.F / 12));
-  const TcFloats difference = tcf_madd(t, tcf_madd(t, tcf_madd(t, tcf_madd(t, tcf_set(-1.F / 40), c3), c2), c1), c0);
-  const TcFloats alpha = t * tcf_madd(-t, tcf_madd(-t, tcf_madd(-t, tcf_set(1.F / 24), tcf_set(1.F / 6)), tcf_set(0.5F)), tcf_set(1));
+  TcFloats alpha, difference;
+  TC_SEGMENTS_THIN(t, d, alpha, difference, tcf_madd, TC_SINGLE_CONSTANT);
   weight[0] = 0.5F * (alpha - difference);
   weight[1] = 0.5F * (alpha + difference);
   weight[2] = 1 - alpha;
@@ -362,14 +358,13 @@ static void single_arrive(const TcShell *shell, Single *single) {
   }
 }
 
-static unsigned single_at_shell(const TcShell *shell, TcFloatMask active, TcWords cell) {
-  unsigned ended = tcf_bits(tcf_and(active, tcf_high_bit(cell)));
+/* at_shell() */
+TC_INLINE unsigned single_at_shell(const TcShell *shell, TcFloatMask active, TcWords cell) {
+  const unsigned ended = tcf_bits(tcf_and(active, tcf_high_bit(cell)));
   if (!shell->visible) return ended;
-  for (unsigned lanes = tcf_bits(active) & ~ended; lanes; lanes &= lanes - 1) {
-    const int i = __builtin_ctz(lanes);
-    if (!shell->visible[cell[i] >> TC_CLUSTER_BITS]) ended |= 1U << i;
-  }
-  return ended;
+  uint32_t at[TC_SINGLES];
+  memcpy(at, &cell, sizeof at);
+  return ended | invisible(shell, tcf_bits(active) & ~ended, at);
 }
 
 /* advance(), of two pairs of packets. */
@@ -478,8 +473,10 @@ TC_INLINE void single_run(const TcShell *shell, const bool wide, const bool colo
   Single single[TC_PACKETS];
   const float margin = (float)(0x1p-22 * shell->volume->radius);
   TC_EACH_PACKET single_begin(margin, packet + 2 * i, &single[i]);
-  while (single[0].starting || single[0].active || single[1].starting || single[1].active) {
+  for (bool runs = true; runs;) {
     single_advance(shell, wide, colored, pieces, worker, single);
+    runs = false;
+    TC_EACH_PACKET runs = runs || single[i].starting || single[i].active;
   }
   for (int i = 0; i < TC_PACKETS; ++i) single_end(shell, pieces, worker, &single[i]);
 }

@@ -49,15 +49,23 @@ static void mark_done(const TcShell *shell, TcSpans *spans, int64_t from, uint32
   }
 }
 
+/* The lanes whose cells can't be seen. */
+static unsigned invisible(const TcShell *shell, unsigned lanes, const uint32_t *cell) {
+  unsigned result = 0;
+  for (; lanes; lanes &= lanes - 1) {
+    const int i = __builtin_ctz(lanes);
+    if (!shell->visible[cell[i] >> TC_CLUSTER_BITS]) result |= 1U << i;
+  }
+  return result;
+}
+
 /* The lanes of `active` that are at the shell. */
 TC_INLINE unsigned at_shell(const TcShell *shell, TcMask active, TcWord cell) {
-  unsigned ended = tc_bits(tc_and(active, tc_high_bit(cell)));
+  const unsigned ended = tc_bits(tc_and(active, tc_high_bit(cell)));
   if (!shell->visible) return ended;
-  for (unsigned lanes = tc_bits(active) & ~ended; lanes; lanes &= lanes - 1) {
-    const int i = __builtin_ctz(lanes);
-    if (!shell->visible[cell[i] >> TC_CLUSTER_BITS]) ended |= 1U << i;
-  }
-  return ended;
+  uint32_t at[TC_LANES];
+  memcpy(at, &cell, sizeof at);
+  return ended | invisible(shell, tc_bits(active) & ~ended, at);
 }
 
 /* The light of what walks have crossed, in the lanes of `moved`: `cell` from depth z and scalar s on, what lies beyond *seen. */
@@ -155,7 +163,7 @@ TC_INLINE void advance(const TcShell *shell, const bool wide, const bool cells, 
     TcVec z[TC_PACKETS], s[TC_PACKETS];
     TcMask walking[TC_PACKETS], lost[TC_PACKETS];
     TC_EACH_PACKET {
-      walking[i] = cells ? active[i] : tc_and_not(active[i], packet[i].parts.pending);
+      walking[i] = tc_and_not(active[i], packet[i].parts.pending);
       z[i] = packet[i].walks.z;
       s[i] = packet[i].walks.s;
       packet[i].from = tc_select_word(walking[i], packet[i].walks.cell, packet[i].from);
@@ -175,7 +183,7 @@ TC_INLINE void advance(const TcShell *shell, const bool wide, const bool cells, 
         packet[i].active &= ~(tc_bits(lost[i]) | tc_bits(opaque));
         halt = halt || !packet[i].active;
       }
-      const TcMask ready = cells ? active[i] : tc_and_not(active[i], packet[i].parts.pending);
+      const TcMask ready = tc_and_not(active[i], packet[i].parts.pending);
       active[i] = tc_and_not(active[i], tc_mask_of(at_shell(shell, ready, packet[i].walks.cell)));
       const unsigned ended = packet[i].active & ~tc_bits(active[i]);
       halt = halt || (ended && (ended == packet[i].active || ended & packet[i].again));
@@ -323,6 +331,7 @@ static void finish_of_tile(void *user, const Packet *packet) {
   Tile *tile = user;
   const TcLights *lights = &packet->lights;
   const TcTolerance *tolerance = &tile->worker->tolerance;
+  /* In proportion to the opacity, where nothing was left behind. */
   TcVec bound = lights->alpha * tc_tolerance_bound(tolerance, &(TcLight){.stopped = false}, 1, packet->steps);
   for (unsigned left = packet->stopped; left; left &= left - 1) {
     const int i = __builtin_ctz(left);

@@ -40,7 +40,7 @@ static TetcastStatus prepare(TetcastScene *scene) {
 }
 
 /* Single precision for packets, where a bound on what it costs leaves enough of the tolerance. To find out how steep the field is takes about as
- * long as is saved at eight crossings of each cell: small pictures of large meshes are not worth it, nor is what would not do even for a
+ * long as is saved at ten crossings of each cell: small pictures of large meshes are not worth it, nor is what would not do even for a
  * flat field. */
 static TetcastStatus allow_single(TetcastScene *scene, double wanted, int64_t rays, TcTolerance *tolerance) {
   const TetcastVolume *volume = scene->volume;
@@ -48,16 +48,15 @@ static TetcastStatus allow_single(TetcastScene *scene, double wanted, int64_t ra
   if (!(wanted > 0) || (double)rays * cbrt(cells) < 4 * cells) return TETCAST_OK;
   const TcPieces *pieces = &scene->scaled->pieces;
   TcTolerance half = tc_tolerance_begin(pieces, 0.5 * wanted), flat = half;
-  TcExtent extent = {.radius = volume->radius};
+  const TcSteepness none = {.radius = volume->radius};
   if (volume->association != TETCAST_POINT || !(half.thin > 0)) return TETCAST_OK;
-  if (!tc_tolerance_allow_single(pieces, &extent, 0.5 * wanted, &flat)) return TETCAST_OK;
+  if (!tc_tolerance_allow_single(pieces, &none, 0.5 * wanted, &flat)) return TETCAST_OK;
   TetcastStatus status = TETCAST_OK;
   pthread_mutex_lock(&scene->mutex);
   if (scene->steepness_number != volume->field_number) status = tc_steepness(volume, &scene->steepness);
   if (!status) scene->steepness_number = volume->field_number;
   pthread_mutex_unlock(&scene->mutex);
-  extent = (TcExtent){volume->radius, scene->steepness.diameter, scene->steepness.gradient, scene->steepness.value};
-  if (!status && tc_tolerance_allow_single(pieces, &extent, 0.5 * wanted, &half)) *tolerance = half;
+  if (!status && tc_tolerance_allow_single(pieces, &scene->steepness, 0.5 * wanted, &half)) *tolerance = half;
   return status;
 }
 

@@ -67,7 +67,7 @@ TetcastStatus tc_steepness(const TetcastVolume *volume, TcSteepness *steepness) 
   if (!tc_allocate_array(context, (void **)&pass.found, threads, sizeof *pass.found, "gradients")) return TETCAST_ERROR_MEMORY;
   memset(pass.found, 0, (size_t)threads * sizeof *pass.found);
   tc_parallel_for(context, volume->clusters.count, GRAIN, take, &pass, NULL);
-  *steepness = (TcSteepness){0, 0, 0};
+  *steepness = (TcSteepness){.radius = volume->radius};
   for (int i = 0; i < threads; ++i) {
     steepness->gradient = fmax(steepness->gradient, pass.found[i].gradient);
     steepness->diameter = fmax(steepness->diameter, pass.found[i].diameter);
