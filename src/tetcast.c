@@ -11,7 +11,6 @@
 #include "mesh/mesh.h"
 #include "optics/transfer.h"
 #include "render/render.h"
-#include "traverse/volume.h"
 
 #define ARGUMENT(context, ...) tc_error(context, TETCAST_ERROR_ARGUMENT, __VA_ARGS__)
 
@@ -209,7 +208,7 @@ TetcastStatus tetcast_field_create(TetcastContext *context, const TetcastFieldDe
   const TetcastStatus status = check_array(context, &desc->values, "field values");
   if (status) return status;
   if (desc->values.count > 0 && tc_type_size(desc->values.type) == 0) return ARGUMENT(context, "field values need a type");
-  if (desc->association != TETCAST_POINT && desc->association != TETCAST_CELL) {
+  if ((unsigned)desc->association > TETCAST_CORNER) {
     return ARGUMENT(context, "a field belongs to points or to cells");
   }
   return tc_field_create(context, desc, field);
@@ -254,12 +253,6 @@ void tetcast_volume_destroy(TetcastVolume **volume) {
   *volume = NULL;
 }
 
-TetcastStatus tetcast_volume_set_field(TetcastVolume *volume, const TetcastField *field) {
-  if (!volume) return TETCAST_ERROR_ARGUMENT;
-  CHECK_GIVEN(volume->context, field);
-  return tc_volume_set_field(volume, field);
-}
-
 void tetcast_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info) { tc_volume_info(volume, info); }
 
 /* ── transfer function ── */
@@ -277,19 +270,6 @@ TetcastStatus tetcast_transfer_function_create(TetcastContext *context, const Te
     return ARGUMENT(context, "unknown opacity model %d", (int)desc->opacity_model);
   }
   return tc_transfer_create(context, desc, transfer_function);
-}
-
-TetcastStatus tetcast_transfer_function_create_preset(TetcastContext *context, const TetcastVolume *volume, const char *name,
-                                                      double low, double high, TetcastTransferFunction **transfer_function) {
-  CHECK_OUT(context, transfer_function);
-  CHECK_GIVEN(context, context);
-  CHECK_GIVEN(context, volume);
-  CHECK_GIVEN(context, name);
-  if (!volume->has_field) return ARGUMENT(context, "a preset needs a volume with a field");
-  if (!isfinite(low) || !isfinite(high) || low > high) return ARGUMENT(context, "range %g to %g of a preset", low, high);
-  double extinction;
-  const TetcastStatus status = tc_preset_extinction(context, volume, low, high, &extinction);
-  return status ? status : tc_transfer_create_preset(context, name, low, high, extinction, transfer_function);
 }
 
 const char *tetcast_preset_name(int i) { return tc_preset_name(i); }
@@ -328,7 +308,9 @@ TetcastStatus tetcast_frame_create(TetcastContext *context, const TetcastFrameDe
                     largest);
   }
   if (!tc_type_is_float(desc->type)) return ARGUMENT(context, "a frame's type must be float32 or float64");
-  if (desc->channels >> TC_CHANNELS) {
+  uint32_t known = 0;
+  for (int i = 0; i < TC_CHANNELS; ++i) known |= tc_channels[i].info.channel;
+  if (desc->channels & ~known) {
     return ARGUMENT(context, "a frame with channels 0x%" PRIx32 ": some are unknown", desc->channels);
   }
   if (desc->groups < 1 || desc->groups > TETCAST_MAX_GROUPS) {
@@ -353,6 +335,7 @@ TetcastType tetcast_frame_type(const TetcastFrame *frame) { return frame->type; 
 const void *tetcast_frame_pixels(const TetcastFrame *frame) { return frame->pixels; }
 int64_t tetcast_frame_row_stride(const TetcastFrame *frame) { return frame->row_stride; }
 int tetcast_frame_groups(const TetcastFrame *frame) { return frame->groups; }
+const TetcastChannelInfo *tetcast_channel_info(int i) { return i >= 0 && i < TC_CHANNELS ? &tc_channels[i].info : NULL; }
 const void *tetcast_frame_channel(const TetcastFrame *frame, TetcastChannel channel) { return tc_frame_channel(frame, channel); }
 
 /* ── scene ── */
@@ -368,6 +351,23 @@ void tetcast_scene_destroy(TetcastScene **scene) {
   if (!scene) return;
   tc_scene_destroy(*scene);
   *scene = NULL;
+}
+
+TetcastStatus tetcast_scene_set_field(TetcastScene *scene, const TetcastField *field) {
+  if (!scene) return TETCAST_ERROR_ARGUMENT;
+  CHECK_GIVEN(scene->context, field);
+  return tc_scene_set_field(scene, field);
+}
+
+TetcastStatus tetcast_scene_create_preset(const TetcastScene *scene, const char *name, double low, double high,
+                                          TetcastTransferFunction **transfer_function) {
+  if (!scene) return TETCAST_ERROR_ARGUMENT;
+  TetcastContext *context = scene->context;
+  CHECK_OUT(context, transfer_function);
+  CHECK_GIVEN(context, name);
+  if (!scene->values) return ARGUMENT(context, "a preset needs a scene with a field");
+  if (!isfinite(low) || !isfinite(high) || low > high) return ARGUMENT(context, "range %g to %g of a preset", low, high);
+  return tc_scene_preset(scene, name, low, high, transfer_function);
 }
 
 TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer_function) {
@@ -429,27 +429,21 @@ static TetcastStatus check_camera(TetcastContext *context, const TetcastCamera *
 /* Whether the scene is complete, and is one that fills the frame's channels. */
 static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderDesc *desc, const TetcastFrame *frame) {
   TetcastContext *context = scene->context;
-  bool direct = false, grouped = false;
+  const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT, error = tc_frame_channel(frame, TETCAST_CHANNEL_ERROR) != NULL;
+  const TcCoefficients *c = scene->coefficients;
   for (int i = 0; i < TC_CHANNELS; ++i) {
-    const TetcastChannel channel = (TetcastChannel)(1 << i);
-    if (!frame->channel[i] || channel == TETCAST_CHANNEL_ERROR) continue;
-    direct = true;
-    grouped = grouped || channel != TETCAST_CHANNEL_PATH_LENGTH;
-  }
-  if (scene->coefficients) {
-    if (desc->integrator != TETCAST_INTEGRATOR_EXACT) return ARGUMENT(context, "with coefficients there is only the exact integrator");
-    if (frame->channel[0]) return ARGUMENT(context, "with coefficients there is no channel for the error");
-    if (grouped && frame->groups != scene->coefficients->groups) {
-      return ARGUMENT(context, "a frame of %d groups, but the scene has %d", frame->groups, scene->coefficients->groups);
+    const TetcastChannelInfo *info = &tc_channels[i].info;
+    if (!frame->channel[i]) continue;
+    if (info->needs_coefficients && !c) return ARGUMENT(context, "with a transfer function there is no channel %s", info->name);
+    if (info->of_groups && frame->groups != c->groups) {
+      return ARGUMENT(context, "a frame of %d groups, but the scene has %d", frame->groups, c->groups);
     }
-    return TETCAST_OK;
   }
-  if (!scene->volume->has_field) return ARGUMENT(context, "the volume has no field yet");
-  if (!scene->transfer) return ARGUMENT(context, "the scene has no transfer function yet");
-  if (direct) return ARGUMENT(context, "with a transfer function there is only the channel for the error");
-  if (desc->integrator != TETCAST_INTEGRATOR_EXACT && (desc->tolerance > 0 || frame->channel[0])) {
-    return ARGUMENT(context, "only the exact integrator knows its error: no %s with another",
-                    frame->channel[0] ? "channel for the error" : "tolerance");
+  if (c && !exact) return ARGUMENT(context, "with coefficients there is only the exact integrator");
+  if (!c && !scene->values) return ARGUMENT(context, "the scene has no field yet");
+  if (!c && !scene->transfer) return ARGUMENT(context, "the scene has no transfer function yet");
+  if (!exact && (desc->tolerance > 0 || error)) {
+    return ARGUMENT(context, "only the exact integrator knows its error: no %s with another", error ? "channel for the error" : "tolerance");
   }
   return TETCAST_OK;
 }
@@ -476,6 +470,5 @@ TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamer
   }
   TetcastStatus status = check_scene(scene, desc, frame);
   if (!status) status = check_camera(context, camera);
-  /* The first frame after a change prepares the scene, behind a lock: nothing that the caller could see. */
-  return status ? status : tc_scene_render((TetcastScene *)scene, camera, desc, frame, stats);
+  return status ? status : tc_scene_render(scene, camera, desc, frame, stats);
 }

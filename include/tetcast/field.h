@@ -14,10 +14,11 @@ extern "C" {
 
 typedef enum TetcastAssociation {
   TETCAST_POINT = 0, /* one value per vertex, linear (barycentric) in each tetrahedron */
-  TETCAST_CELL       /* one value per tetrahedron, constant in it */
+  TETCAST_CELL,      /* one value per tetrahedron, constant in it */
+  TETCAST_CORNER     /* four values per tetrahedron, in the order of its vertices: linear in it, with jumps between tetrahedra */
 } TetcastAssociation;
 
-/* One scalar per vertex or per cell. NaN and infinite values make the cells they touch transparent. */
+/* One scalar per vertex, per cell or per corner of a cell. NaN and infinite values make the cells they touch transparent. */
 typedef struct TetcastField TetcastField;
 
 typedef struct TetcastFieldDesc {

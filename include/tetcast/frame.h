@@ -19,8 +19,8 @@ typedef struct TetcastFrame TetcastFrame;
 
 /* Channels beside red, green, blue, alpha; bits of a set. */
 typedef enum TetcastChannel {
-  /* A bound on the error of each of the pixel's four channels: what the tolerance let go, rounding in the integral and in the sum
-   * over a ray's segments, rounding to the frame's type. Where the ray meets the faces is taken as computed. */
+  /* A bound on the error of each of the pixel's four channels: what the tolerance let go; what rounding does to the places where rays meet faces and to the
+   * values there, to the integral, to the sum over a ray's segments; rounding to the frame's type. Measured along each ray, which takes longer. */
   TETCAST_CHANNEL_ERROR = 1,
 
   /* Of a scene with coefficients (scene.h), for each group: */
@@ -43,6 +43,23 @@ typedef struct TetcastFrameDesc {
   uint32_t channels;     /* TetcastChannel bits; default 0. The frame allocates these */
   int groups;            /* of the channels that have one for each, in [1, TETCAST_MAX_GROUPS]; default 1 */
 } TetcastFrameDesc;
+
+/* What there is to know of a channel. */
+typedef struct TetcastChannelInfo {
+  /* Its bit. */
+  TetcastChannel channel;
+  /* What commands and picture files call it. */
+  const char *name;
+  /* A sentence that says what it is. */
+  const char *description;
+  /* Not 0: it has a value for each group, else one. */
+  int of_groups;
+  /* Not 0: only scenes with coefficients have it. */
+  int needs_coefficients;
+} TetcastChannelInfo;
+
+/* Channel i = 0, 1, …, in the order in which files hold them; NULL beyond the last. Static storage. */
+TETCAST_API const TetcastChannelInfo *tetcast_channel_info(int i);
 
 TETCAST_API TetcastFrameDesc tetcast_frame_desc_default(void);
 

@@ -24,6 +24,17 @@ TETCAST_API TetcastStatus tetcast_scene_create(TetcastContext *context, const Te
 /* Frees the scene and sets *scene to NULL. NULL and pointer to NULL do nothing. */
 TETCAST_API void tetcast_scene_destroy(TetcastScene **scene);
 
+/* Sets or replaces the scalar that is seen. It must have as many values as the volume's mesh had vertices or cells (TETCAST_ERROR_ARGUMENT). Its values are
+ * copied into the volume's order; nothing else is rebuilt, and scenes of one volume that are given the same field share the copy, unless it borrows
+ * its array. Must not run while this scene renders. On error the scene keeps its former field. */
+TETCAST_API TetcastStatus tetcast_scene_set_field(TetcastScene *scene, const TetcastField *field);
+
+/* A transfer function from a colour map: colours of preset `name` (tetcast_preset_name()) over [low, high] with an extinction that rises from 0 at `low` to what
+ * makes rays that meet anything opaque to one half on average. The scene must have a field (TETCAST_ERROR_ARGUMENT); an unknown name is
+ * TETCAST_ERROR_ARGUMENT. The caller destroys the result. */
+TETCAST_API TetcastStatus tetcast_scene_create_preset(const TetcastScene *scene, const char *name, double low, double high,
+                                                      TetcastTransferFunction **transfer_function);
+
 /* Sets or replaces the transfer function; what is needed of it is copied. Must not run while this scene renders. On error
  * the scene keeps its former one, or its coefficients. */
 TETCAST_API TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer_function);
@@ -68,8 +79,7 @@ typedef enum TetcastIntegrator {
 /* Instruction sets that there are kernels for, from the slowest to the fastest. */
 typedef enum TetcastIsa {
   TETCAST_ISA_AUTO = 0, /* the fastest that the processor has */
-  TETCAST_ISA_SCALAR,   /* one ray at a time: what the others are tested against */
-  TETCAST_ISA_BASELINE, /* packets of rays; SSE2 on x86, NEON on ARM */
+  TETCAST_ISA_SCALAR,   /* for any processor, one ray in each lane */
   TETCAST_ISA_AVX2,     /* with FMA */
   TETCAST_ISA_AVX512    /* F, VL, DQ */
 } TetcastIsa;

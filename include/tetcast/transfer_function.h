@@ -6,7 +6,6 @@
 
 #include <tetcast/context.h>
 #include <tetcast/status.h>
-#include <tetcast/volume.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -44,14 +43,6 @@ TETCAST_API TetcastTransferFunctionDesc tetcast_transfer_function_desc_default(v
 /* All arrays are copied. Unsorted, negative or non-finite entries are TETCAST_ERROR_ARGUMENT; the message names the knot. */
 TETCAST_API TetcastStatus tetcast_transfer_function_create(TetcastContext *context, const TetcastTransferFunctionDesc *desc,
                                                            TetcastTransferFunction **transfer_function);
-
-/* A named colour map over [low, high] (low ≤ high) with an extinction that rises linearly from 0 at `low`, scaled so that
- * rays that meet the volume are on average about half opaque, whatever the unit of length and however the field's values are
- * distributed. The volume must have a field. An unknown name is TETCAST_ERROR_ARGUMENT; the
- * message lists the names. */
-TETCAST_API TetcastStatus tetcast_transfer_function_create_preset(TetcastContext *context, const TetcastVolume *volume,
-                                                                  const char *name, double low, double high,
-                                                                  TetcastTransferFunction **transfer_function);
 
 /* Name of preset i = 0, 1, …; NULL beyond the last. Static storage. */
 TETCAST_API const char *tetcast_preset_name(int i);

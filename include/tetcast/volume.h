@@ -26,6 +26,8 @@ typedef enum TetcastTraversal {
 typedef struct TetcastVolumeDesc {
   uint32_t cookie;
   TetcastTraversal traversal;
+  /* Not 0: scenes may be given fields of corners (TETCAST_CORNER). One byte more for each tetrahedron. Default 0. */
+  int corners;
   TetcastProgress progress;
 } TetcastVolumeDesc;
 
@@ -40,11 +42,6 @@ TETCAST_API TetcastStatus tetcast_volume_create(TetcastContext *context, const T
 /* Frees the volume and sets *volume to NULL. NULL and pointer to NULL do nothing. Scenes of it must be gone. */
 TETCAST_API void tetcast_volume_destroy(TetcastVolume **volume);
 
-/* Sets or replaces the scalar, copying it into the volume's own order; nothing else is rebuilt. The field must have as
- * many values as the mesh had vertices or cells (TETCAST_ERROR_ARGUMENT). On error the volume keeps its former field.
- * Must not run while a scene of this volume renders. */
-TETCAST_API TetcastStatus tetcast_volume_set_field(TetcastVolume *volume, const TetcastField *field);
-
 typedef struct TetcastVolumeInfo {
   int64_t vertices;        /* of the mesh */
   int64_t tetrahedra;      /* that can be crossed: the mesh's less those left out */
@@ -53,8 +50,6 @@ typedef struct TetcastVolumeInfo {
   size_t bytes;            /* resident memory: arrays of the volume and what Embree holds for it */
   double bounds[6];        /* of its cells: xmin, xmax, ymin, ymax, zmin, zmax */
   double boundary_area;    /* area of the faces at which rays enter and leave */
-  double field_range[2];   /* smallest and largest finite value of the field, 0, 0 without one */
-  int64_t field_nonfinite; /* values that are NaN or infinite */
   TetcastTraversal traversal;
 } TetcastVolumeInfo;
 

@@ -15,8 +15,7 @@ static inline bool tc_cpu_has(TetcastIsa isa) {
            __builtin_cpu_supports("fma");
   case TETCAST_ISA_AVX2: return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 #endif
-  case TETCAST_ISA_SCALAR:
-  case TETCAST_ISA_BASELINE: return true;
+  case TETCAST_ISA_SCALAR: return true;
   default: return false;
   }
 }

@@ -94,7 +94,7 @@ static int perform(Converge *converge, Folder *folder) {
     if (code == CLI_DONE)
       code = stage_prepare(&converge->stage, &converge->options);
     if (code == CLI_DONE)
-      code = stage_shade(&converge->stage, &converge->options, converge->stage.info.field_range);
+      code = stage_shade(&converge->stage, &converge->options, converge->stage.range);
   }
   cli_interrupt_hold(true);
   if (code == CLI_DONE)

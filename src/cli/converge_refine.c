@@ -154,7 +154,7 @@ static void fill_cells(int n, int32_t *cells) {
         }
 }
 
-static TetcastStatus create_volume(TetcastContext *context, int n, TetcastVolume **volume) {
+static TetcastStatus create_scene(TetcastContext *context, int n, TetcastVolume **volume, TetcastScene **scene) {
   const int64_t vertex_count = (int64_t)(n + 1) * (n + 1) * (n + 1), cell_count = (int64_t)6 * n * n * n;
   double *vertices = cli_allocate(sizeof *vertices * 3 * (size_t)vertex_count);
   double *values = cli_allocate(sizeof *values * (size_t)vertex_count);
@@ -176,7 +176,9 @@ static TetcastStatus create_volume(TetcastContext *context, int n, TetcastVolume
   if (status == TETCAST_OK)
     status = tetcast_volume_create(context, mesh, NULL, volume);
   if (status == TETCAST_OK)
-    status = tetcast_volume_set_field(*volume, field);
+    status = tetcast_scene_create(context, *volume, scene);
+  if (status == TETCAST_OK)
+    status = tetcast_scene_set_field(*scene, field);
   tetcast_field_destroy(&field);
   tetcast_mesh_destroy(&mesh);
   free(vertices);
@@ -223,9 +225,7 @@ static TetcastStatus begin_level(Converge *converge, Level *level, int n) {
   tetcast_scene_destroy(&level->scene);
   tetcast_volume_destroy(&level->volume);
   converge_progress(converge, level_weight(n));
-  TetcastStatus status = create_volume(converge->context, n, &level->volume);
-  if (status == TETCAST_OK)
-    status = tetcast_scene_create(converge->context, level->volume, &level->scene);
+  TetcastStatus status = create_scene(converge->context, n, &level->volume, &level->scene);
   if (status == TETCAST_OK)
     status = tetcast_scene_set_transfer_function(level->scene, level->transfer_function);
   return status;

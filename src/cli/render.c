@@ -114,7 +114,7 @@ static int load(Run *run) {
     code = stage_prepare(&run->stage, &run->options);
   stage_drop_dataset(&run->stage);
   if (code == CLI_DONE)
-    code = stage_shade(&run->stage, &run->options, run->stage.info.field_range);
+    code = stage_shade(&run->stage, &run->options, run->stage.range);
   return code;
 }
 

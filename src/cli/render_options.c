@@ -28,7 +28,7 @@ typedef enum OptionKind { KIND_TEXT, KIND_PATH, KIND_NUMBERS, KIND_INTEGERS, KIN
 
 /* Order of the library's enumerations. */
 static const char *const opacity_models[] = {"unit-distance", "vtk-unstructured", "ospray", NULL};
-static const char *const isas[] = {"auto", "scalar", "baseline", "avx2", "avx512", NULL};
+static const char *const isas[] = {"auto", "scalar", "avx2", "avx512", NULL};
 static const char *const traversals[] = {"shell", "faces", NULL};
 static const char *const pixel_types[] = {"", "uint8", "uint16", "half", "float", "double", NULL};
 
@@ -90,7 +90,7 @@ static const struct {
     [OPTION_TRAVERSAL] = {"traversal", KIND_CHOICE, AT(traversal), .names = traversals,
                           .form = "expected shell or faces"},
     [OPTION_ISA] = {"isa", KIND_CHOICE, AT(isa), .names = isas,
-                    .form = "expected auto, scalar, baseline, avx2 or avx512"},
+                    .form = "expected auto, scalar, avx2 or avx512"},
     [OPTION_THREADS] = {"threads", KIND_INTEGERS, AT(threads), 1, 1, 0, 4096,
                         .form = "expected a whole number from 0 (all) to 4096"},
     [OPTION_REPEAT] = {"repeat", KIND_INTEGERS, AT(repeat), 1, 1, 1, 1e6,

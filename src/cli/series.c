@@ -244,7 +244,7 @@ static int render_step(Series *series, int64_t step, const char *path, bool kept
   if (render_options_range(&run->options) == RANGE_STEP)
     tetcast_transfer_function_destroy(&stage->transfer_function);
   if (code == CLI_DONE)
-    code = stage_shade(stage, &run->options, stage->info.field_range);
+    code = stage_shade(stage, &run->options, stage->range);
   cli_progress_part(series->label, done + 0.3 / steps, done + 1 / steps);
   if (code == CLI_DONE)
     code = render_frame(run);

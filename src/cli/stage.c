@@ -141,8 +141,8 @@ static TetcastStatus set_transfer_function(Stage *stage, const RenderOptions *op
   if (!stage->transfer_function) {
     if (render_options_range(options) == RANGE_FIXED)
       range = options->range;
-    status = tetcast_transfer_function_create_preset(stage->context, stage->volume, render_options_preset(options), range[0],
-                                                     range[1], &stage->transfer_function);
+    status = tetcast_scene_create_preset(stage->scene, render_options_preset(options), range[0], range[1],
+                                         &stage->transfer_function);
   }
   if (status == TETCAST_OK)
     status = tetcast_scene_set_transfer_function(stage->scene, stage->transfer_function);
@@ -156,14 +156,17 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
   if (status == TETCAST_OK && !stage->scene)
     status = tetcast_scene_create(stage->context, stage->volume, &stage->scene);
   if (status == TETCAST_OK)
-    status = stage->field ? tetcast_volume_set_field(stage->volume, stage->field)
+    status = stage->field ? tetcast_scene_set_field(stage->scene, stage->field)
                           : coefficients_set(stage->scene, options, &stage->coefficients);
   if (status != TETCAST_OK)
     return cli_failed(status);
   tetcast_volume_info(stage->volume, &stage->info);
-  if (stage->info.field_nonfinite > 0)
+  int64_t nonfinite = 0;
+  if (stage->field)
+    tetcast_field_range(stage->field, stage->range, &nonfinite);
+  if (nonfinite > 0)
     cli_warning("array %s: %lld values are NaN or infinite; the cells they touch are transparent", stage->array,
-                (long long)stage->info.field_nonfinite);
+                (long long)nonfinite);
   stage->prepare_seconds = cli_seconds() - start;
   return view_complete(options, stage->info.bounds, &stage->camera) ? cli_verdict(CLI_DONE) : CLI_FAILED;
 }

@@ -20,6 +20,7 @@ typedef struct Stage {
   TetcastTransferFunction *transfer_function;
   TetcastScene *scene;
   TetcastCamera camera;
+  double range[2];    /* of the field's finite values */
   char *array; /* what was read, as --array would name it; NULL: coefficients */
   double read_seconds, prepare_seconds;
   /* for series */

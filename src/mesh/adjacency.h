@@ -23,7 +23,7 @@ typedef struct TcShellFace {
 typedef struct TcAdjacency {
   TetcastContext *context;
   int64_t cell_count, shell_count;
-  TcCell *cells;           /* [cell_count], and room for one more, so that more than one cell may be read at once */
+  TcCell *cells;           /* [cell_count], and room for one more */
   TcShellFace *shell;      /* [shell_count] */
   uint32_t (*vertices)[4]; /* [cell_count], ascending, if they were asked for */
   uint32_t *source;        /* [cell_count]: the mesh's cell */

@@ -5,12 +5,15 @@
 #include "base/parallel.h"
 #include "mesh/mesh.h"
 
+static atomic_llong fields; /* made so far */
+
 TetcastStatus tc_field_create(TetcastContext *context, const TetcastFieldDesc *desc, TetcastField **out) {
   TetcastField *field;
   if (!tc_allocate_array(context, (void **)&field, 1, sizeof *field, "field")) return TETCAST_ERROR_MEMORY;
   memset(field, 0, sizeof *field);
   field->context = context;
   field->association = desc->association;
+  field->serial = atomic_fetch_add(&fields, 1) + 1;
   const TetcastStatus status =
     tc_array_keep(context, &desc->values, 1, desc->ownership, "field values", &field->values, &field->memory);
   if (status) {

@@ -21,6 +21,7 @@ struct TetcastField {
   TetcastArray values;
   void *memory; /* NULL when borrowed */
   TetcastAssociation association;
+  int64_t serial; /* > 0, of this field alone */
 };
 
 /* Vertices and cells are numbered with 31 bits, the top bit of a neighbour marks the shell (volume.h). */

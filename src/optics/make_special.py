@@ -109,9 +109,8 @@ def main():
     functions = (("mills", mills, 64), ("dawson", dawson, 192), ("mills moment", mills_moment, 64),
                  ("dawson moment", dawson_moment, 192))
     print("/* SPDX-License-Identifier: Apache-2.0 */")
-    print("/* Made by make_special.py. Row i of a function's n covers t in [i, i + 1] / n; coefficients of rising powers\n"
-          " * of v in [-1, 1]. */")
-    print("const _Alignas(64) double tc_special_table[2 * TC_SPECIAL_ROWS][TC_SPECIAL_TERMS] = {")
+    print("/* Made by make_special.py, and included where a table is defined. Row i of a function's n covers t in [i, i + 1] / n; coefficients of\n"
+          " * rising powers of v in [-1, 1]. */")
     for name, function, pieces in functions:
         rows, worst = [], 0
         for i in range(pieces):
@@ -120,7 +119,6 @@ def main():
             rows.append("  {" + ", ".join(float(c).hex() for c in poly) + "},")
         print("  /* %s: largest error of the fit: %s */" % (name, mp.nstr(worst, 3)))
         print("\n".join(rows))
-    print("};")
 
 
 if __name__ == "__main__":

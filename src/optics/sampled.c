@@ -86,18 +86,56 @@ void tc_sampler_destroy(TcSampler *sampler) {
   tc_release(sampler->context, sampler);
 }
 
-/* ── one segment ── */
+/* ── light ── */
 
-/* Everything that is not exact ends here: a colour already weighted with the segment's own transmittance, and its depth. */
-static void add(TcLight *light, const double emitted[3], double depth) {
-  const TcSegment segment = {.w0 = 1, .depth = depth, .transmittance = exp(-depth)};
-  tc_light_add_segment(light, &segment, emitted, emitted);
+enum { BLOCK = 64 };
+
+static void end_block(TcLight *light) {
+  for (int k = 0; k < 3; ++k) {
+    light->color[k] += light->transmittance * light->block_color[k];
+    light->block_color[k] = 0;
+  }
+  light->depth += light->block_depth;
+  light->transmittance = exp(-light->depth);
+  light->block_depth = 0;
+  light->block_transmittance = 1;
+  light->block_length = 0;
 }
 
-static void add_midpoint(TcLight *light, const TcPieces *pieces, double length, double s) {
+bool tc_light_opaque(const TcLight *light, const TcPieces *pieces) {
+  if (light->depth + light->block_depth <= TC_NEARLY_OPAQUE) return false;
+  const double left = light->transmittance * light->block_transmittance;
+  for (int k = 0; k < 3; ++k) {
+    const double color = light->color[k] + light->transmittance * light->block_color[k];
+    if (left * pieces->largest[k] > 0x1p-54 * color) return false;
+  }
+  return true;
+}
+
+void tc_light_end(TcLight *light, double rgba[4]) {
+  end_block(light);
+  for (int k = 0; k < 3; ++k) rgba[k] = light->color[k];
+  rgba[3] = -expm1(-light->depth);
+}
+
+/* ── one segment ── */
+
+/* A colour already weighted with the segment's own transmittance, and its depth. */
+static void add(TcLight *light, const double emitted[3], double depth) {
+  for (int k = 0; k < 3; ++k) light->block_color[k] += light->block_transmittance * emitted[k];
+  light->block_transmittance *= exp(-depth);
+  light->block_depth += depth;
+  if (++light->block_length == BLOCK) end_block(light);
+}
+
+static void add_constant(TcLight *light, const TcOptics *o, double length) {
+  const double depth = o->extinction * length, alpha = -expm1(-depth);
+  add(light, (double[3]){alpha * o->color[0], alpha * o->color[1], alpha * o->color[2]}, depth);
+}
+
+void tc_light_add_constant(TcLight *light, const TcPieces *pieces, double length, double s) {
   const TcOptics o = tc_pieces_at(pieces, s);
-  const double depth = o.extinction * length, alpha = -expm1(-depth);
-  add(light, (double[3]){alpha * o.color[0], alpha * o.color[1], alpha * o.color[2]}, depth);
+  add_constant(light, &o, length);
 }
 
 /* Depth and colour by the trapezoidal rule, emission as if both were constant at these. */
@@ -136,22 +174,36 @@ static double psi_from_table(const TcSampler *sampler, double a, double a1) {
 }
 
 /* The closed form with a tabulated Ψ, on one linear piece. */
-static void add_table(const void *data, TcLight *light, const TcOptics *near, const TcOptics *far, double length) {
-  const TcSampler *sampler = data;
-  const double a = fmin(near->extinction * length, 1e300), a1 = fmin(far->extinction * length, 1e300), depth = 0.5 * a + 0.5 * a1;
+static void add_table_part(TcLight *light, const TcSampler *sampler, const TcPiece *piece, double length, double s0, double s1) {
+  const TcOptics near = tc_piece_at(piece, s0), far = tc_piece_at(piece, s1);
+  const double a = fmin(near.extinction * length, 1e300), a1 = fmin(far.extinction * length, 1e300), depth = 0.5 * a + 0.5 * a1;
   const double psi = psi_from_table(sampler, a, a1), transmittance = exp(-depth);
   double emitted[3];
-  for (int k = 0; k < 3; ++k) {
-    emitted[k] = near->color[k] - far->color[k] * transmittance + (far->color[k] - near->color[k]) * psi;
-  }
+  for (int k = 0; k < 3; ++k) emitted[k] = near.color[k] - far.color[k] * transmittance + (far.color[k] - near.color[k]) * psi;
   add(light, emitted, depth);
+}
+
+/* Cut at the knots. The lengths of parts come from differences of scalars, not of positions along the segment: nothing cancels. */
+static void add_table(TcLight *light, const TcPieces *pieces, const TcSampler *sampler, double length, double s0, double s1) {
+  const double whole = fabs(s1 - s0);
+  const int step = s0 <= s1 ? 1 : -1;
+  const TcPiece *piece = &pieces->pieces[s0 <= s1 ? tc_piece_above(pieces, s0) : tc_piece_below(pieces, s0)];
+  if (s0 == s1) {
+    add_table_part(light, sampler, piece, length, s0, s1);
+    return;
+  }
+  for (; s0 != s1; piece += step) {
+    const double end = step > 0 ? fmin(piece->high, s1) : fmax(piece->low, s1);
+    add_table_part(light, sampler, piece, length * (fabs(end - s0) / whole), s0, end);
+    s0 = end;
+  }
 }
 
 void tc_light_add_sampled(TcLight *light, const TcPieces *pieces, const TcSampler *sampler, double length, double s0, double s1) {
   const int n = sampler->n;
   switch (sampler->integrator) {
   case TETCAST_INTEGRATOR_MIDPOINT:
-    for (int i = 0; i < n; ++i) add_midpoint(light, pieces, length / n, s0 + (s1 - s0) * ((i + 0.5) / n));
+    for (int i = 0; i < n; ++i) tc_light_add_constant(light, pieces, length / n, s0 + (s1 - s0) * ((i + 0.5) / n));
     break;
   case TETCAST_INTEGRATOR_TRAPEZOID:
     for (int i = 0; i < n; ++i) {
@@ -159,7 +211,7 @@ void tc_light_add_sampled(TcLight *light, const TcPieces *pieces, const TcSample
     }
     break;
   case TETCAST_INTEGRATOR_GAUSS: add_gauss(light, pieces, sampler, length, s0, s1); break;
-  case TETCAST_INTEGRATOR_TABLE: tc_light_split(light, pieces, length, s0, s1, add_table, sampler); break;
-  case TETCAST_INTEGRATOR_EXACT: tc_light_add(light, pieces, length, s0, s1); break;
+  case TETCAST_INTEGRATOR_TABLE: add_table(light, pieces, sampler, length, s0, s1); break;
+  case TETCAST_INTEGRATOR_EXACT: break; /* by the kernels themselves */
   }
 }

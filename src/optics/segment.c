@@ -3,7 +3,16 @@
 
 #include <math.h>
 
+/* The same in both precisions. */
+const _Alignas(64) double tc_special_f64[2 * TC_SPECIAL_ROWS][TC_SPECIAL_TERMS] = {
 #include "optics/special_table.h"
+};
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wfloat-conversion"
+const _Alignas(64) float tc_special_f32[2 * TC_SPECIAL_ROWS][TC_SPECIAL_TERMS] = {
+#include "optics/special_table.h"
+};
+#pragma GCC diagnostic pop
 
 /* Largest a, so that nothing that is computed from two of them overflows. */
 static const double MAX_DEPTH = 1e300;
@@ -14,7 +23,7 @@ static double table_value(int first, int rows, double t) {
   int i = (int)scaled;
   if (i > rows - 1) i = rows - 1;
   const double v = 2 * (scaled - i) - 1;
-  const double *c = tc_special_table[first + i];
+  const double *c = tc_special_f64[first + i];
   double p = c[TC_SPECIAL_TERMS - 1];
   for (int k = TC_SPECIAL_TERMS - 2; k >= 0; --k) p = p * v + c[k];
   return p;

@@ -46,6 +46,7 @@ TcMoments tc_segment_moments(double a, double a1);
 
 /* Mills' ratio and Dawson's integral, for Ψ, then the negatives of their derivatives, for its moments (segment.c, make_special.py). */
 enum { TC_MILLS_ROWS = 64, TC_DAWSON_ROWS = 192, TC_SPECIAL_ROWS = TC_MILLS_ROWS + TC_DAWSON_ROWS, TC_SPECIAL_TERMS = 8 };
-extern const double tc_special_table[2 * TC_SPECIAL_ROWS][TC_SPECIAL_TERMS];
+extern const double tc_special_f64[2 * TC_SPECIAL_ROWS][TC_SPECIAL_TERMS];
+extern const float tc_special_f32[2 * TC_SPECIAL_ROWS][TC_SPECIAL_TERMS];
 
 #endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Made by make_special.py. Row i of a function's n covers t in [i, i + 1] / n; coefficients of rising powers
- * of v in [-1, 1]. */
-const _Alignas(64) double tc_special_table[2 * TC_SPECIAL_ROWS][TC_SPECIAL_TERMS] = {
+/* Made by make_special.py, and included where a table is defined. Row i of a function's n covers t in [i, i + 1] / n; coefficients of
+ * rising powers of v in [-1, 1]. */
   /* mills: largest error of the fit: 1.38e-17 */
   {0x1.01ffefe0c3f58p+0, 0x1.ffcf83d7b5e2bp-8, -0x1.85c2270423182p-19, -0x1.078317ac4696fp-20, -0x1.c05814e98b0ebp-28, 0x1.ae229a6e9f7b5p-33, 0x1.d55a863fe4c43p-39, -0x1.c1a51e1c616b8p-45},
   {0x1.05fe46a1417d2p+0, 0x1.fe43c59dd8e0dp-8, -0x1.2bc6e7b203e99p-17, -0x1.13499a52500a2p-20, -0x1.2d40df04d1ec7p-28, 0x1.fb5a301ef4062p-33, 0x1.591fd410ac012p-39, -0x1.5218226e4c375p-44},
@@ -518,4 +517,3 @@ const _Alignas(64) double tc_special_table[2 * TC_SPECIAL_ROWS][TC_SPECIAL_TERMS
   {-0x1.066ef56011c29p+3, 0x1.3c995e68aab9dp-5, 0x1.5dcd25660f0e9p-12, -0x1.245677622861bp-18, 0x1.5b6a5a17a8c09p-26, -0x1.bc21b60e4e9b0p-37, -0x1.094c2454738ddp-41, 0x1.0c332e335e196p-48},
   {-0x1.03eb1ca23980ep+3, 0x1.471b81fa70ad3p-5, 0x1.42e705174803dp-12, -0x1.198513c810536p-18, 0x1.58c7585695853p-26, -0x1.3c2aa67d4299ep-36, -0x1.d9dabecc8ea2cp-42, 0x1.f553a4e0322bap-49},
   {-0x1.0153141b4fd9fp+3, 0x1.50ca803298ef6p-5, 0x1.29036c68248b3p-12, -0x1.0ecc526016142p-18, 0x1.5546165f1c7e7p-26, -0x1.8ffbff18f5d01p-36, -0x1.a4e29c528cdafp-42, 0x1.d375150b2cc97p-49},
-};

@@ -3,69 +3,62 @@
 
 #include <math.h>
 
-/* Rounding, in units of 2^−53, relative to the ray's opacity times the largest colour: a segment's weights 72 (segment_simd.h; segment.h: 36), its
- * extinction, length and colours, each from interpolation, 16; the product of transmittances and the sum of colours over a block of 64 segments
- * 4 · 64; sums over blocks, of which there are segments / 64, 2 each, and once more through the depth. */
-static double rounding(int64_t segments) { return (512 + (double)segments / 16) * 0x1p-53; }
+/* In units of 2^−53: a segment's weights 72 (segment_lanes.h; segment.h: 36), its extinction, length and colours, each from interpolation, 20; the product
+ * of transmittances and the sum of colours over a block of 128 parts of segments 4 · 128; sums over blocks, of which there are segments / 64, 2 each, and
+ * once more through the depth. */
+double tc_rounding(int64_t segments) { return (768 + (double)segments / 16) * 0x1p-53; }
+
+static double largest_extinction(const TcPieces *pieces) {
+  double largest = 0;
+  for (int64_t i = 0; i <= pieces->count; ++i) {
+    largest = fmax(largest, fmax(pieces->pieces[i].at_low.extinction, pieces->pieces[i].at_high.extinction));
+  }
+  return largest;
+}
 
 TcTolerance tc_tolerance_begin(const TcPieces *pieces, double tolerance) {
-  TcTolerance result = {.thin = -1, .opaque = TC_OPAQUE_DEPTH, .color = fmax(pieces->largest[0], fmax(pieces->largest[1], pieces->largest[2]))};
-  const double largest = fmax(1, result.color), spare = tolerance - rounding(1 << 14) * largest;
+  TcTolerance result = {.thin = -1, .opaque = TC_OPAQUE_DEPTH, .most = INFINITY};
+  result.color = fmax(1, fmax(pieces->largest[0], fmax(pieces->largest[1], pieces->largest[2])));
+  result.per_shift = 2.1 * result.color * largest_extinction(pieces);
+  const double spare = tolerance - tc_rounding(1 << 14) * result.color;
   if (!(spare > 0)) return result; /* rounding alone may take that much */
-  /* tc_segment_thin() is off by less than T⁴/90 relative to the opacity, for T ≤ 1/2. */
-  result.thin = fmin(0.5, sqrt(sqrt(90 * spare / (4.1 * largest))));
+  /* tc_segments_thin() is off by less than T⁴/90 relative to the opacity, for T ≤ 1/2. */
+  result.thin = fmin(0.5, sqrt(sqrt(90 * spare / (4.1 * result.color))));
   result.relative = result.thin * result.thin * result.thin * result.thin / 90;
-  result.opaque = fmax(0, log(2 * largest) - log(spare)); /* more than is needed when the tolerance is above 1 */
+  result.opaque = fmax(0, log(2 * result.color) - log(spare)); /* more than is needed when the tolerance is above 1 */
   return result;
 }
 
-/* The largest extinction, and the largest slopes. */
-typedef struct Slopes {
-  double extinction, rise, color_rise;
-} Slopes;
+/* In units of 2^−24: segments' weights and transmittances 2 · 102, the sums and products of a block of 64 segments 256, with some to spare. Blocks are summed
+ * up in double precision. */
+static const double single_rounding = 600 * 0x1p-24;
 
-static bool has_extinction(const TcPiece *piece) { return piece->at_low.extinction > 0 || piece->at_high.extinction > 0; }
-
-/* Over scalars up to `value` either way; false: it jumps there. */
-static bool find_slopes(const TcPieces *pieces, double value, Slopes *slopes) {
-  const TcPiece *before = NULL;
-  *slopes = (Slopes){0, 0, 0};
+bool tc_tolerance_single(const TcPieces *pieces, double tolerance, double largest, double length, TcTolerance *result, double *values) {
+  const double most = 0x1p60, u = 0x1p-24; /* most: far from where numbers, or products of some of them, overflow */
+  if (pieces->scaled || pieces->count > 1 << 20) return false;
+  TcTolerance half = tc_tolerance_begin(pieces, 0.5 * tolerance);
+  *values = largest;
   for (int64_t i = 0; i <= pieces->count; ++i) {
-    const TcPiece *piece = &pieces->pieces[i];
-    if (piece->high < -value || piece->low > value) continue;
-    slopes->extinction = fmax(slopes->extinction, fmax(piece->at_low.extinction, piece->at_high.extinction));
-    slopes->rise = fmax(slopes->rise, fabs(piece->at_high.extinction - piece->at_low.extinction) * piece->inverse);
-    if (before && before->at_high.extinction != piece->at_low.extinction) return false;
-    for (int k = 0; k < 3 && has_extinction(piece); ++k) {
-      slopes->color_rise = fmax(slopes->color_rise, fabs(piece->at_high.color[k] - piece->at_low.color[k]) * piece->inverse);
-      if (before && has_extinction(before) && before->at_high.color[k] != piece->at_low.color[k]) return false;
-    }
-    before = piece;
+    const double *row = pieces->rows_f64[i];
+    if (row[TC_PIECE_HIGH] < -largest || row[TC_PIECE_LOW] > largest) continue;
+    if (row[TC_PIECE_JUMP] > 0) return false;
+    half.per_spread = fmax(half.per_spread, row[TC_PIECE_STEEP]);
+    if (i < pieces->count && fabs(pieces->knots[i]) <= largest) *values = fmax(*values, fabs(pieces->knots[i]));
   }
+  if (!(largest < most && half.per_spread < most && half.per_shift < most && half.color < most)) return false;
+  half.thin = -1; /* its polynomials are shorter anyway */
+  half.relative = 0;
+  half.rounding = single_rounding;
+  half.most = fmin(tolerance, 0.09);
+  const double least = half.per_spread * length * 32 * u * largest + half.per_shift * 64 * u * length + single_rounding * half.color + 0.5 * tolerance;
+  if (!(half.opaque < TC_OPAQUE_DEPTH && least <= 0.9 * half.most)) return false;
+  *result = half;
   return true;
 }
 
-bool tc_tolerance_allow_single(const TcPieces *pieces, const TcSteepness *field, double tolerance, TcTolerance *result) {
-  const double u = 0x1p-24, radius = field->radius, color = fmax(1, result->color);
-  double value = field->value;
-  Slopes slopes;
-  if (pieces->narrow || pieces->count > 1 << 20 || !find_slopes(pieces, value, &slopes)) return false;
-  for (int64_t i = 0; i < pieces->count; ++i) {
-    if (pieces->knots[i] >= -field->value && pieces->knots[i] <= field->value) value = fmax(value, fabs(pieces->knots[i]));
-  }
-  const double most = 0x1p60; /* far from where numbers, or products of some of them, overflow */
-  if (!(value < most && slopes.extinction < most && slopes.rise < most && slopes.color_rise < most && color < most)) return false;
-  const double moved = 1.5 * u * field->diameter * field->gradient + 32 * u * value + 0x1p-140, eta = 32 * u * radius;
-  result->per_shift = 2.1 * color * slopes.extinction; /* e^ε < 1.1: see below */
-  result->per_variation = eta * (2.1 * color * slopes.rise + slopes.color_rise * slopes.extinction);
-  result->single_fixed = 2.1 * color * slopes.rise * 2 * radius * moved + result->per_shift * (2 * eta + 16 * u * radius) +
-                         slopes.color_rise * moved + 400 * u * color;
-  result->single_most = fmin(tolerance, 0.09);
-  return result->single_fixed <= 0.75 * result->single_most;
-}
-
-double tc_tolerance_bound(const TcTolerance *tolerance, const TcLight *light, double alpha, int64_t segments) {
-  const double color = fmax(1, tolerance->color);
-  const double left = light->stopped ? exp(-light->depth) * color : 0;
-  return left + alpha * color * (2 * tolerance->relative / (1 - tolerance->relative) + rounding(segments));
+double tc_tolerance_bound(const TcTolerance *tolerance, double depth, bool stopped, double alpha, int64_t segments, double moved) {
+  const double color = tolerance->color, left = stopped ? exp(-depth) * color : 0;
+  if (!(moved < 0.09)) return color; /* no channel is off by more than what it may be */
+  return left + moved +
+         alpha * color * (2 * tolerance->relative / (1 - tolerance->relative) + (tolerance->rounding > 0 ? tolerance->rounding : tc_rounding(segments)));
 }

@@ -9,50 +9,54 @@
  * however many there are: T_before is the product of the transmittances used, and Σ T_before α telescopes. Ending a ray where its
  * transmittance is T leaves out at most T C of the colour and T of the opacity.
  *
- * Single precision (packet_single.h), u = 2⁻²⁴. A ray sees a mesh whose vertices are moved across it by √2 u of their distance from it,
- * which is at most D, the longest edge. So where it sees s̃, the field has s within √2 u D G, G its steepest gradient. To that comes what
- * rounding does to values, the largest of which is S: of a vertex 1 u S, interpolation in a face 11, where the ray begins 10, at knots 3; together
- * E = 1.5 u D G + 32 u S. The depths at which it sees them are off by 12 u R, R the volume's radius, where they fall back by twice that: η = 32 u R; and
- * more where it enters and leaves, as a face of the shell may be seen almost edge-on. How much more is measured there, against the depths
- * in double precision: Δ in all. With V the sum of |Δs| along the ray, at most 2R long, K the largest extinction, K' and C' the largest slopes
- * of extinction and colour over s,
+ * What rounding does to the places where a ray meets faces: vertices are rounded beside the ray, each for itself and for all its cells, so the ray sees a
+ * mesh that is a little deformed, by at most ε (walk/screen.h: beside + relative · distance). A vertex keeps its value; so what is seen at a
+ * point, the field has within ε of it. In a cell whose scalar changes by at most G beside the ray, the scalar is off by ε G, for each of the two faces
+ * of it; ε G is at most
  *
- *     ε = ∫ |κ̃ − κ| dt ≤ K' (2 R E + η V) + K (Δ + 2 η + 16 u R)   (rounding of lengths and extinctions: 8 u K 2R)
+ *     ε (|∂s/∂x| + |Δs/Δz| |∂z/∂x|),
  *
- * changes the opacity by ε at most, and the colour by C ε (1 + e^ε) + C' (E + K η V), as ∫ κ e^−τ dt ≤ 1. The light's own rounding is 400 u C α at
- * most: of a block of 64 segments, transmittances 128 u, sums of colours 128 u; each segment's weights and colours 30 u. Blocks are summed
- * up in double precision. Where the field or the transfer function jumps there is no such bound, and single precision is not used. */
+ * with the slopes of one of the cell's two faces that the ray crosses, whichever is less (walk/points.h: tilt). To that comes what rounding does to
+ * the values themselves, δs, and to depths, δz. Over a cell that is crossed over a length h the integral of the scalar's error is at most the
+ *
+ *     spread = 2 ε (h |∂s/∂x| + |Δs| |∂z/∂x|) + h δs + |Δs| δz.
+ *
+ * Where what is seen jumps, as at the shell, at any face of a field of cells, the depth itself counts, the shift = ε |∂z/∂x| + δz.
+ *
+ * With K the largest extinction, and K' and C' the slopes of extinction and colour over the scalar, extinctions are off by
+ * ∫ |κ̃ − κ| dt ≤ η = Σ K' spread + K Σ shift. That changes the opacity by η at most, and the colour by C η (1 + e^η) + C' Σ K spread, as
+ * ∫ κ e^−τ dt ≤ 1 and, in a cell, ∫ κ dt ≤ K h. For η < 0.09 it is less than Σ (2.1 C K' + C' K) spread + 2.1 C K Σ shift, slopes and K being those of the
+ * piece of the transfer function where the segment is (transfer.h: steep). Within the scalar's error of a knot it may be in the piece beside, or
+ * jump: over a length of at most 2 spread / |Δs|. */
 #ifndef TC_OPTICS_TOLERANCE_H
 #define TC_OPTICS_TOLERANCE_H
 
 #include "optics/transfer.h"
 
 typedef struct TcTolerance {
-  double thin;     /* segments up to this optical depth are evaluated by tc_segment_thin(); below 0: none */
-  double relative; /* δ of these */
-  double opaque;   /* optical depth beyond which a ray ends */
-  double color;    /* C: largest component of any colour that is seen */
-
-  /* Single precision: what is off by it is at most fixed + per_variation V + per_shift Δ. A ray for which that is above `single_most` is
-   * left to double precision. 0: all are. */
-  double single_most, single_fixed, per_variation, per_shift;
+  double thin;       /* segments up to this optical depth are evaluated by tc_segments_thin(); below 0: none */
+  double relative;   /* δ of these */
+  double opaque;     /* optical depth beyond which a ray ends */
+  double color;      /* C: the largest component of any colour that is seen, at least 1 */
+  double per_shift;  /* 2.1 C K */
+  double per_spread; /* single precision: the largest of 2.1 C K' + C' K; with knots rounded, pieces are not told apart */
+  double rounding;   /* single precision: of the integral, relative to the opacity times C */
+  double most;       /* single precision: a ray whose bound is above this is walked again in double precision */
 } TcTolerance;
-
-/* What of a volume and its point field the bound depends on, all in scaled units. */
-typedef struct TcSteepness {
-  double radius;   /* R, of the volume */
-  double diameter; /* D, the longest edge */
-  double gradient; /* G, the largest of a cell's |∇s|; infinite if there is a value that is not finite, or a cell without volume */
-  double value;    /* S, the largest |s| */
-} TcSteepness;
 
 /* Spends half of `tolerance` on evaluation and half on ending rays; 0: exact. */
 TcTolerance tc_tolerance_begin(const TcPieces *pieces, double tolerance);
 
-/* Allows single precision to take `tolerance` beyond what is spent otherwise, if that looks like enough. */
-bool tc_tolerance_allow_single(const TcPieces *pieces, const TcSteepness *field, double tolerance, TcTolerance *result);
+/* The same for single precision, which takes half of it; false: it would not do. Scalars are at most `largest`, of rays with a length of at most
+ * `length` in the mesh, of which rounding to single precision takes `depth` at each end. *values: the largest magnitude of scalars and of knots
+ * among them. */
+bool tc_tolerance_single(const TcPieces *pieces, double tolerance, double largest, double length, TcTolerance *result, double *values);
 
-/* Bound on the error of each channel, after tc_light_end(): of a light of this opacity, made from `segments` segments. */
-double tc_tolerance_bound(const TcTolerance *tolerance, const TcLight *light, double alpha, int64_t segments);
+/* Rounding of the integral in double precision, relative to the opacity times the largest colour, of a ray made from `segments` segments. */
+double tc_rounding(int64_t segments);
+
+/* Bound on the error of each channel of a ray of this optical depth and opacity, made from `segments` segments; `stopped`: there may be more behind;
+ * `moved`: what the places where it meets faces make off. */
+double tc_tolerance_bound(const TcTolerance *tolerance, double depth, bool stopped, double alpha, int64_t segments, double moved);
 
 #endif

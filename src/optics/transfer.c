@@ -93,47 +93,94 @@ static int64_t merge_knots(const Knots *a, const Knots *b, double *merged) {
 static bool is_empty(const TcPiece *piece) { return piece->at_low.extinction == 0 && piece->at_high.extinction == 0; }
 
 /* Where rays go from piece i, the next above or below: several pieces without extinction are passed at once. −1, count + 1: none. */
-static double next_piece(const TcPieces *pieces, int64_t i, int step) {
+static int64_t next_piece(const TcPieces *pieces, int64_t i, int step) {
   const int64_t next = i + step, second = next + step;
-  if (second < 0 || second > pieces->count || !is_empty(&pieces->pieces[next]) || !is_empty(&pieces->pieces[second])) return (double)next;
+  if (second < 0 || second > pieces->count || !is_empty(&pieces->pieces[next]) || !is_empty(&pieces->pieces[second])) return next;
   return step > 0 ? pieces->pieces[next].filled_above : pieces->pieces[next].filled_below;
 }
 
-static void make_row(const TcPieces *pieces, int64_t i, double row[TC_PIECE_WORDS]) {
-  const TcPiece *piece = &pieces->pieces[i];
-  const TcOptics *a = &piece->at_low, *b = &piece->at_high;
-  const bool constant = piece->constant;
-  const double words[TC_PIECE_WORDS] = {piece->low, piece->high, constant ? 0 : piece->low, constant ? 0 : piece->high, piece->inverse, constant,
-                                        a->extinction, b->extinction, a->color[0], a->color[1], a->color[2], b->color[0], b->color[1], b->color[2],
-                                        next_piece(pieces, i, 1), next_piece(pieces, i, -1)};
-  memcpy(row, words, sizeof words);
+/* 1, or the power of two that makes the piece's width one in [1, 2), where a slope would overflow or lose digits without. */
+static double scale_of(const TcPiece *piece) {
+  if (piece->constant) return 1;
+  const double width = piece->high - piece->low, *at[2] = {&piece->at_low.extinction, piece->at_low.color};
+  const double *to[2] = {&piece->at_high.extinction, piece->at_high.color};
+  int exponent;
+  frexp(width, &exponent);
+  for (int k = 0; k < 4; ++k) {
+    const double rise = fabs(to[k > 0][k > 0 ? k - 1 : 0] - at[k > 0][k > 0 ? k - 1 : 0]) / width;
+    if (rise > 0 && !(rise > DBL_MIN && rise < DBL_MAX / 2)) return ldexp(1, 1 - exponent > 1023 ? 1023 : 1 - exponent);
+  }
+  return width < DBL_MIN ? ldexp(1, 1023) : 1;
 }
 
-static void make_single_row(const TcPiece *piece, const double row[TC_PIECE_WORDS], float single[TC_PIECE_WORDS]) {
-  const TcOptics *a = &piece->at_low, *b = &piece->at_high;
-  const double words[TC_PIECE_WORDS] = {row[0], row[1], row[2], a->extinction, (b->extinction - a->extinction) * piece->inverse, a->color[0],
-                                        a->color[1], a->color[2], (b->color[0] - a->color[0]) * piece->inverse,
-                                        (b->color[1] - a->color[1]) * piece->inverse, (b->color[2] - a->color[2]) * piece->inverse, row[14], row[15]};
-  for (int k = 0; k < TC_PIECE_WORDS; ++k) single[k] = (float)fmax(-FLT_MAX, fmin(words[k], FLT_MAX)); /* beyond: not used (tolerance.h) */
+/* 2.1 C Δκ + Δc κ over the two optics, with C the largest colour and at least 1, κ the larger extinction. */
+static double change(const TcPieces *pieces, const TcOptics *a, const TcOptics *b) {
+  const double most = fmax(a->extinction, b->extinction), largest = fmax(1, fmax(pieces->largest[0], fmax(pieces->largest[1], pieces->largest[2])));
+  double color = 0;
+  for (int k = 0; most > 0 && k < 3; ++k) color = fmax(color, fabs(a->color[k] - b->color[k]));
+  return 2.1 * largest * fabs(a->extinction - b->extinction) + color * most;
+}
+
+static double steepness(const TcPieces *pieces, int64_t i) {
+  if (i < 0 || i > pieces->count || pieces->pieces[i].constant) return 0;
+  const TcPiece *piece = &pieces->pieces[i];
+  return change(pieces, &piece->at_low, &piece->at_high) / (piece->high - piece->low);
+}
+
+static double jump(const TcPieces *pieces, int64_t i) {
+  const TcPiece *piece = &pieces->pieces[i];
+  const double below = i > 0 ? change(pieces, &piece[-1].at_high, &piece->at_low) : 0;
+  return fmax(below, i < pieces->count ? change(pieces, &piece->at_high, &piece[1].at_low) : 0);
+}
+
+static void make_row(TcPieces *pieces, int64_t i) {
+  const TcPiece *piece = &pieces->pieces[i];
+  const bool rises = piece->at_low.extinction <= piece->at_high.extinction;
+  const TcOptics *from = rises ? &piece->at_low : &piece->at_high, *to = rises ? &piece->at_high : &piece->at_low;
+  const double scale = scale_of(piece);
+  const double width = (rises ? piece->high - piece->low : piece->low - piece->high) * scale;
+  double word[TC_PIECE_WORDS] = {
+    [TC_PIECE_LOW] = piece->low, [TC_PIECE_HIGH] = piece->high, [TC_PIECE_FROM] = rises ? piece->low : piece->high,
+    [TC_PIECE_EXTINCTION] = from->extinction, [TC_PIECE_FILLED] = !is_empty(piece), [TC_PIECE_SCALE] = scale,
+    [TC_PIECE_STEEP] = steepness(pieces, i), [TC_PIECE_BESIDE] = fmax(steepness(pieces, i - 1), steepness(pieces, i + 1)),
+    [TC_PIECE_JUMP] = jump(pieces, i)};
+  if (piece->constant) word[TC_PIECE_FROM] = isfinite(piece->low) ? piece->low : isfinite(piece->high) ? piece->high : 0;
+  else word[TC_PIECE_RISE] = (to->extinction - from->extinction) / width;
+  for (int k = 0; k < 3; ++k) {
+    word[TC_PIECE_COLOR + k] = from->color[k];
+    if (!piece->constant) word[TC_PIECE_COLOR_RISE + k] = (to->color[k] - from->color[k]) / width;
+  }
+  if (scale != 1) pieces->scaled = true;
+  for (int k = 0; k < TC_PIECE_WORDS; ++k) {
+    pieces->rows_f64[i][k] = word[k];
+    pieces->rows_f32[i][k] = (float)fmax(-FLT_MAX, fmin(word[k], FLT_MAX)); /* beyond: not used (tolerance.h) */
+  }
+  const int64_t next[2] = {next_piece(pieces, i, 1), next_piece(pieces, i, -1)};
+  const int32_t next_f32[2] = {(int32_t)next[0], (int32_t)next[1]};
+  memcpy(&pieces->rows_f64[i][TC_PIECE_ABOVE], next, sizeof next);
+  memcpy(&pieces->rows_f32[i][TC_PIECE_ABOVE], next_f32, sizeof next_f32);
+  for (int k = 0; k < TC_PIECE_WORDS; ++k) { /* copied as they are: some are no reals */
+    if (i < TC_LOOKUP_F64) memcpy(&pieces->columns_f64[k][i], &pieces->rows_f64[i][k], sizeof(double));
+    if (i < TC_LOOKUP_F32) memcpy(&pieces->columns_f32[k][i], &pieces->rows_f32[i][k], sizeof(float));
+  }
 }
 
 /* What follows from the pieces as they are. */
 static void look_at_pieces(TetcastTransferFunction *transfer) {
   TcPieces *pieces = &transfer->pieces;
   memset(pieces->largest, 0, sizeof pieces->largest);
-  pieces->narrow = false;
+  pieces->scaled = false;
   pieces->one_color = true;
-  double above = (double)pieces->count + 1, below = -1;
+  int64_t above = pieces->count + 1, below = -1;
   for (int64_t i = pieces->count; i >= 0; --i) {
-    if (!is_empty(&transfer->piece[i])) above = (double)i;
+    if (!is_empty(&transfer->piece[i])) above = i;
     transfer->piece[i].filled_above = above;
   }
   for (int64_t i = 0; i <= pieces->count; ++i) {
     TcPiece *piece = &transfer->piece[i];
-    if (!is_empty(piece)) below = (double)i;
+    if (!is_empty(piece)) below = i;
     piece->filled_below = below;
     piece->inverse = piece->constant ? 0 : 1 / (piece->high - piece->low);
-    if (!isfinite(piece->inverse)) pieces->narrow = true;
     if (is_empty(piece)) continue;
     for (int k = 0; k < 3; ++k) {
       pieces->largest[k] = fmax(pieces->largest[k], fmax(piece->at_low.color[k], piece->at_high.color[k]));
@@ -144,8 +191,7 @@ static void look_at_pieces(TetcastTransferFunction *transfer) {
     for (int k = 0; !is_empty(piece) && k < 3; ++k) {
       if (piece->at_low.color[k] != pieces->largest[k] || piece->at_high.color[k] != pieces->largest[k]) pieces->one_color = false;
     }
-    make_row(pieces, i, transfer->row[i]);
-    make_single_row(piece, transfer->row[i], transfer->single_row[i]);
+    make_row(pieces, i);
   }
 }
 
@@ -166,8 +212,9 @@ static void make_pieces(TetcastTransferFunction *transfer) {
     piece->constant = a->extinction == b->extinction && a->color[0] == b->color[0] && a->color[1] == b->color[1] &&
                       a->color[2] == b->color[2];
   }
-  transfer->pieces = (TcPieces){.count = n, .knots = transfer->knots, .pieces = transfer->piece, .rows = transfer->row,
-                                 .single_rows = transfer->single_row};
+  transfer->pieces.count = n;
+  transfer->pieces.knots = transfer->knots;
+  transfer->pieces.pieces = transfer->piece;
   look_at_pieces(transfer);
 }
 
@@ -213,14 +260,15 @@ TetcastStatus tc_transfer_create(TetcastContext *context, const TetcastTransferF
   if (!tc_allocate_array(context, (void **)&transfer, 1, sizeof *transfer, "transfer function")) return TETCAST_ERROR_MEMORY;
   memset(transfer, 0, sizeof *transfer);
   transfer->context = context;
+  TcPieces *pieces = &transfer->pieces;
   transfer->color_count = desc->color_count;
   transfer->extinction_count = count;
   if (!tc_allocate_array(context, (void **)&transfer->color, desc->color_count, 4 * sizeof(double), "transfer function") ||
       !tc_allocate_array(context, (void **)&transfer->extinction, count, 2 * sizeof(double), "transfer function") ||
       !tc_allocate_array(context, (void **)&transfer->knots, most, sizeof(double), "transfer function") ||
       !tc_allocate_array(context, (void **)&transfer->piece, most + 1, sizeof *transfer->piece, "transfer function") ||
-      !tc_allocate_array(context, (void **)&transfer->row, most + 1, sizeof *transfer->row, "transfer function") ||
-      !tc_allocate_array(context, (void **)&transfer->single_row, most + 1, sizeof *transfer->single_row, "transfer function")) {
+      !tc_allocate_array(context, (void **)&pieces->rows_f64, most + 1, sizeof *pieces->rows_f64, "transfer function") ||
+      !tc_allocate_array(context, (void **)&pieces->rows_f32, most + 1, sizeof *pieces->rows_f32, "transfer function")) {
     tc_transfer_destroy(transfer);
     return TETCAST_ERROR_MEMORY;
   }
@@ -269,7 +317,40 @@ void tc_transfer_destroy(TetcastTransferFunction *transfer) {
   tc_release(context, transfer->extinction);
   tc_release(context, transfer->knots);
   tc_release(context, transfer->piece);
-  tc_release(context, transfer->row);
-  tc_release(context, transfer->single_row);
+  tc_release(context, transfer->pieces.rows_f64);
+  tc_release(context, transfer->pieces.rows_f32);
   tc_release(context, transfer);
 }
+
+int64_t tc_piece_above(const TcPieces *pieces, double s) {
+  int64_t low = 0, high = pieces->count;
+  while (low < high) {
+    const int64_t middle = (low + high) / 2;
+    if (pieces->knots[middle] <= s) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+int64_t tc_piece_below(const TcPieces *pieces, double s) {
+  int64_t low = 0, high = pieces->count;
+  while (low < high) {
+    const int64_t middle = (low + high) / 2;
+    if (pieces->knots[middle] < s) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+/* In a piece that is not constant, at low ≤ s ≤ high. Both ends come out exactly, and a width may be denormal. */
+static TcOptics optics_at(const TcPiece *piece, double s) {
+  const double width = piece->high - piece->low, w = (s - piece->low) / width, v = (piece->high - s) / width;
+  TcOptics optics;
+  optics.extinction = v * piece->at_low.extinction + w * piece->at_high.extinction;
+  for (int k = 0; k < 3; ++k) optics.color[k] = v * piece->at_low.color[k] + w * piece->at_high.color[k];
+  return optics;
+}
+
+TcOptics tc_piece_at(const TcPiece *piece, double s) { return piece->constant ? piece->at_low : optics_at(piece, s); }
+
+TcOptics tc_pieces_at(const TcPieces *pieces, double s) { return tc_piece_at(&pieces->pieces[tc_piece_above(pieces, s)], s); }

@@ -16,27 +16,50 @@ typedef struct TcOptics {
 typedef struct TcPiece {
   double low, high; /* scalars at its ends; the outermost pieces are constant and end at ∓infinity */
   TcOptics at_low, at_high;
-  double inverse; /* 1 / (high − low); 0 for a constant piece */
-  double filled_above, filled_below; /* the nearest piece that has extinction, this one included; count + 1, −1: none */
+  double inverse; /* 1 / (high − low), which may be infinite; 0 for a constant piece */
+  int64_t filled_above, filled_below; /* the nearest piece that has extinction, this one included; count + 1, −1: none */
   bool constant;
 } TcPiece;
 
-/* A piece as packets load it, all doubles: low, high; the same again for interpolation, 0 if it is constant; inverse; 1 if it is constant, else 0;
- * extinction at low, at high; colour at low; at high; the next pieces above and below (count + 1, −1: none), several without extinction passed.
- * In single precision: low, high; low again, 0 if it is constant; extinction there, and its slope; colour there, and its slope; the next
- * pieces; three words unused. */
-enum { TC_PIECE_WORDS = 16 };
+/* A piece as kernels load it, in either precision: a row of numbers. Extinction and colour at a scalar s of the piece are
+ *     extinction + ((s − from) scale) rise,   colour + ((s − from) scale) color_rise.
+ * `from` is the end where extinction is least, so that (s − from) rise ≥ 0: nothing cancels, and extinction is good to four units in the last
+ * place. `scale` is 1, but where a piece is so narrow or so wide that a slope would overflow or underflow: kernels that don't know of that
+ * may not be used then (TcPieces.scaled). `above` and `below` are the next pieces either way, several without extinction passed at once;
+ * count + 1, −1: none. These two are integers as wide as the row's other numbers. */
+enum {
+  TC_PIECE_LOW,
+  TC_PIECE_HIGH,
+  TC_PIECE_FROM,
+  TC_PIECE_EXTINCTION,
+  TC_PIECE_RISE,
+  TC_PIECE_COLOR,
+  TC_PIECE_COLOR_RISE = TC_PIECE_COLOR + 3,
+  TC_PIECE_FILLED = TC_PIECE_COLOR_RISE + 3, /* 1 if there is any extinction, else 0 */
+  TC_PIECE_SCALE,
+  TC_PIECE_ABOVE,
+  TC_PIECE_BELOW,
+  TC_PIECE_STEEP, /* how much light changes with the scalar in the piece, at most: 2.1 C |rise| + largest colour_rise · largest extinction; C: tolerance.h */
+  TC_PIECE_BESIDE, /* the same, of the pieces below and above */
+  TC_PIECE_JUMP,  /* how much it changes at once at the piece's ends, at most: 2.1 C Δextinction + Δcolour · largest extinction */
+  TC_PIECE_WORDS = 20
+};
+
+/* As many pieces as a vector of AVX-512 has lanes may be looked up by a permutation: word k of piece i is columns[k][i]. */
+enum { TC_LOOKUP_F64 = 8, TC_LOOKUP_F32 = 16 };
 
 /* count + 1 pieces between count distinct knots: piece i ends at knot[i], piece i + 1 begins there. */
 typedef struct TcPieces {
   int64_t count;
   const double *knots; /* [count], ascending */
   const TcPiece *pieces;
-  double (*rows)[TC_PIECE_WORDS];      /* the same for packets */
-  float (*single_rows)[TC_PIECE_WORDS]; /* … in single precision */
+  double (*rows_f64)[TC_PIECE_WORDS]; /* [count + 1]: the same as rows */
+  float (*rows_f32)[TC_PIECE_WORDS];
+  _Alignas(64) double columns_f64[TC_PIECE_WORDS][TC_LOOKUP_F64]; /* up to so many pieces: the rows, turned */
+  _Alignas(64) float columns_f32[TC_PIECE_WORDS][TC_LOOKUP_F32];
   double largest[3]; /* of each colour component, where there is any extinction */
   bool one_color;    /* the colour is `largest` wherever there is any extinction */
-  bool narrow;       /* a piece is so narrow that `inverse` overflows */
+  bool scaled;       /* a row's `scale` is not 1 */
 } TcPieces;
 
 struct TetcastTransferFunction {
@@ -46,8 +69,6 @@ struct TetcastTransferFunction {
   double *extinction; /* [extinction_count][2] */
   double *knots;
   TcPiece *piece;
-  double (*row)[TC_PIECE_WORDS];
-  float (*single_row)[TC_PIECE_WORDS];
   TcPieces pieces;
 };
 
@@ -64,56 +85,20 @@ TetcastStatus tc_transfer_create_preset(TetcastContext *context, const char *nam
                                         TetcastTransferFunction **out);
 const char *tc_preset_name(int i);
 
-/* Light gathered along a ray, front to back. Segments are composited in blocks, and blocks into the total, so that rounding
- * grows with the block's length plus the number of blocks, not with the number of segments: with 10⁵ segments the relative error
- * stays below (64 + 10⁵/64) · 2⁻⁵³ · O(1) ≈ 2e-13 even where all roundings point the same way. */
-typedef struct TcLight {
-  double color[3], depth, transmittance;                   /* total of the finished blocks */
-  double block_color[3], block_depth, block_transmittance; /* of the block under way */
-  int block_length;
-  double thin;                                             /* depth up to which a segment may be evaluated by tc_segment_thin() */
-  double opaque;                                           /* depth beyond which the light is complete */
-  bool stopped;                                            /* there may have been more behind */
-} TcLight;
-
 /* Optical depth beyond which e^−τ is zero in double precision: what lies behind can't change a bit of the colour. */
 #define TC_OPAQUE_DEPTH 746.0
 
 /* Depth from which 1 − e^−τ is 1 in double precision. */
 #define TC_NEARLY_OPAQUE 37.5
 
-/* With a tolerance's limits; exact: −1, TC_OPAQUE_DEPTH. */
-static inline TcLight tc_light_begin(double thin, double opaque) {
-  return (TcLight){.transmittance = 1, .block_transmittance = 1, .thin = thin, .opaque = opaque};
-}
-
-/* Whether the light is complete: beyond light->opaque, or so deep that what is left changes no channel by half an ulp. Notes it. */
-bool tc_light_opaque(TcLight *light, const TcPieces *pieces);
-
 /* Piece with low ≤ s < high: at a knot, the later one. */
 int64_t tc_piece_above(const TcPieces *pieces, double s);
 /* Piece with low < s ≤ high: where a scalar that falls from s finds itself. */
 int64_t tc_piece_below(const TcPieces *pieces, double s);
 
-/* Adds what a segment of length `length` > 0 with scalars s0 → s1 (finite, linear in between) emits and absorbs. */
-void tc_light_add(TcLight *light, const TcPieces *pieces, double length, double s0, double s1);
-
-/* Adds a segment of constant scalar s (finite). */
-void tc_light_add_constant(TcLight *light, const TcPieces *pieces, double length, double s);
-
-
-/* Extinction and colour at a scalar; at a knot, the later one's. */
+/* Extinction and colour at a scalar of a piece. */
+TcOptics tc_piece_at(const TcPiece *piece, double s);
+/* The same in the piece where the scalar is; at a knot, the later one. */
 TcOptics tc_pieces_at(const TcPieces *pieces, double s);
-
-/* Calls `function` for each part of a segment between knots, with what holds at the part's two ends. */
-typedef void TcEndsFunction(const void *data, TcLight *light, const TcOptics *near, const TcOptics *far, double length);
-void tc_light_split(TcLight *light, const TcPieces *pieces, double length, double s0, double s1, TcEndsFunction *function,
-                    const void *data);
-
-/* Adds a segment whose integral is known. */
-void tc_light_add_segment(TcLight *light, const TcSegment *segment, const double near[3], const double far[3]);
-
-/* Premultiplied colour and opacity of all that was added. */
-void tc_light_end(TcLight *light, double rgba[4]);
 
 #endif

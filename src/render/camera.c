@@ -2,17 +2,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/vec3.h"
 #include "render/render.h"
 
 static const double DEGREE = 0.017453292519943295;
-
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-static void cross(const double a[3], const double b[3], double c[3]) {
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 /* Makes v a unit vector; false if it has no direction. Scaled first, so that no unit overflows. */
 static bool normalize(double v[3]) {
@@ -21,7 +14,7 @@ static bool normalize(double v[3]) {
   int exponent;
   frexp(largest, &exponent);
   for (int k = 0; k < 3; ++k) v[k] = ldexp(v[k], -exponent);
-  const double length = sqrt(dot(v, v));
+  const double length = sqrt(tc_dot(v, v));
   for (int k = 0; k < 3; ++k) v[k] /= length;
   return true;
 }
@@ -59,29 +52,16 @@ TetcastStatus tc_view_create(TetcastContext *context, const TetcastCamera *camer
     return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: eye and target are the same point (%g, %g, %g)", camera->eye[0],
                     camera->eye[1], camera->eye[2]);
   }
-  if (normalize(view->up)) cross(view->forward, view->up, view->right);
-  if (!normalize(view->up) || dot(view->right, view->right) < 1e-24 || !normalize(view->right)) {
+  if (normalize(view->up)) tc_cross(view->forward, view->up, view->right);
+  if (!normalize(view->up) || tc_dot(view->right, view->right) < 1e-24 || !normalize(view->right)) {
     return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: up (%g, %g, %g) is parallel to the direction of view", camera->up[0],
                     camera->up[1], camera->up[2]);
   }
-  cross(view->right, view->forward, view->up);
+  tc_cross(view->right, view->forward, view->up);
   const double half = view->orthographic ? ldexp(0.5 * camera->height, -volume->exponent) : tan(0.5 * camera->fovy * DEGREE);
   for (int k = 0; k < 3; ++k) {
     view->right[k] *= half * aspect;
     view->up[k] *= half;
   }
   return TETCAST_OK;
-}
-
-void tc_view_line(const TcView *view, double u, double v, TcLine *line) {
-  double shift[3];
-  memcpy(line->eye, view->eye, sizeof line->eye);
-  for (int k = 0; k < 3; ++k) {
-    shift[k] = u * view->right[k] + v * view->up[k];
-    line->offset[k] = view->orthographic ? shift[k] : 0;
-    line->direction[k] = view->orthographic ? view->forward[k] : view->forward[k] + shift[k];
-  }
-  if (view->orthographic) return;
-  const double length = sqrt(dot(line->direction, line->direction));
-  for (int k = 0; k < 3; ++k) line->direction[k] /= length;
 }

@@ -25,8 +25,8 @@ TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *d
   }
   frame->groups = desc->groups;
   for (int i = 0; i < TC_CHANNELS; ++i) {
-    if (!(desc->channels >> i & 1)) continue;
-    const size_t pixel = (size_t)tc_frame_depth(frame, (TetcastChannel)(1 << i)) * tc_type_size(desc->type);
+    if (!(desc->channels & tc_channels[i].info.channel)) continue;
+    const size_t pixel = (size_t)tc_frame_depth(frame, i) * tc_type_size(desc->type);
     if (!tc_allocate_array(context, &frame->channel[i], desc->width * desc->height, pixel, "channel")) {
       tc_frame_destroy(frame);
       return TETCAST_ERROR_MEMORY;
@@ -44,20 +44,20 @@ void tc_frame_destroy(TetcastFrame *frame) {
   tc_release(frame->context, frame);
 }
 
-void tc_frame_put(TetcastFrame *frame, TetcastChannel channel, int64_t x, int64_t y, const double *values) {
-  void *data = tc_frame_channel(frame, channel);
-  if (!data) return;
+static void store_channel(TetcastFrame *frame, int channel, int64_t x, int64_t y, const TcGathered *gathered) {
   const int count = tc_frame_depth(frame, channel);
   const int64_t first = (y * frame->width + x) * count;
   for (int i = 0; i < count; ++i) {
-    if (frame->type == TETCAST_TYPE_FLOAT64) ((double *)data)[first + i] = values[i];
-    else ((float *)data)[first + i] = (float)values[i];
+    const double value = tc_channels[channel].value(gathered, i);
+    if (frame->type == TETCAST_TYPE_FLOAT64) ((double *)frame->channel[channel])[first + i] = value;
+    else ((float *)frame->channel[channel])[first + i] = (float)value;
   }
 }
 
-double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, const double rgba[4], double error) {
+double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, TcGathered *gathered) {
   char *row = (char *)frame->pixels + y * frame->row_stride;
-  double bound = error;
+  double rgba[4];
+  gathered->error = tc_gathered_pixel(gathered, rgba);
   if (frame->type == TETCAST_TYPE_FLOAT64) {
     memcpy(row + x * 4 * (int64_t)sizeof(double), rgba, 4 * sizeof(double));
   } else {
@@ -65,8 +65,11 @@ double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, const double rg
     memcpy(row + x * 4 * (int64_t)sizeof(float), pixel, sizeof pixel);
     double rounding = 0;
     for (int k = 0; k < 4; ++k) rounding = fmax(rounding, fabs((double)pixel[k] - rgba[k]));
-    bound = error + rounding > 0 ? (double)nextafterf((float)(error + rounding), INFINITY) : 0;
+    gathered->error += rounding;
+    if (gathered->error > 0) gathered->error = (double)nextafterf((float)gathered->error, INFINITY);
   }
-  tc_frame_put(frame, TETCAST_CHANNEL_ERROR, x, y, &bound);
-  return bound;
+  for (int i = 0; i < TC_CHANNELS; ++i) {
+    if (frame->channel[i]) store_channel(frame, i, x, y, gathered);
+  }
+  return gathered->error;
 }

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "render/channels.h"
+
+#include <math.h>
+
+static double error_of(const TcGathered *g, int i) {
+  (void)i;
+  return g->error;
+}
+
+/* A quarter is gathered, in the volume's unit of length. */
+static double radiance_of(const TcGathered *g, int i) { return ldexp(g->sums[3 * i], g->exponent + 2); }
+static double optical_depth_of(const TcGathered *g, int i) { return g->sums[3 * i + 1]; }
+static double transmittance_of(const TcGathered *g, int i) { return g->sums[3 * i + 2]; }
+
+static double path_length_of(const TcGathered *g, int i) {
+  (void)i;
+  return ldexp(g->sums[3 * g->coefficients->groups], g->exponent);
+}
+
+const TcChannel tc_channels[TC_CHANNELS] = {
+  {{TETCAST_CHANNEL_RADIANCE, "radiance", "radiance, in the emission's unit times length", 1, 1}, radiance_of},
+  {{TETCAST_CHANNEL_OPTICAL_DEPTH, "optical_depth", "optical depth through all of the mesh", 1, 1}, optical_depth_of},
+  {{TETCAST_CHANNEL_TRANSMITTANCE, "transmittance", "exp(-optical depth)", 1, 1}, transmittance_of},
+  {{TETCAST_CHANNEL_PATH_LENGTH, "path_length", "length of the ray in cells, in the mesh's unit", 0, 1}, path_length_of},
+  {{TETCAST_CHANNEL_ERROR, "error", "bound on the error of red, green, blue and alpha", 0, 0}, error_of},
+};
+
+double tc_gathered_pixel(const TcGathered *g, double rgba[4]) {
+  const TcCoefficients *c = g->coefficients;
+  if (!c) {
+    for (int k = 0; k < 4; ++k) rgba[k] = g->sums[k];
+    return g->sums[4];
+  }
+  double mean = 0;
+  for (int i = 0; i < c->groups; ++i) mean += radiance_of(g, i);
+  mean /= c->groups;
+  for (int k = 0; k < 3; ++k) rgba[k] = c->groups == 3 ? radiance_of(g, k) : mean;
+  rgba[3] = g->sums[3 * c->groups + 1];
+  return g->sums[3 * c->groups + 2];
+}

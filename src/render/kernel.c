@@ -1,0 +1,544 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The kernels of one number type and instruction set: this file is compiled once for each, with TC_LANES, TC_SINGLE and TC_LANES_NAME given by the build
+ * (CMakeLists.txt); it makes the table tc_kernels_NAME. */
+#include "render/kernel.h"
+
+#include "gather/gather.h"
+#include "walk/queue.h"
+
+enum {
+  PACKETS = 2, /* under way at once: one's step fits into what the other's waits for */
+  AGAIN = TC_SINGLE ? 2 * TC_TILE * TC_TILE : 1
+};
+
+#define EACH_PACKET TC_UNROLLED for (int i = 0; i < PACKETS; ++i)
+
+typedef struct Packet {
+  TcPacket walk;
+  TcGather gather;
+  bool under_way;
+} Packet;
+
+/* All that is written again and again lies next to each other. */
+typedef struct State {
+  Packet packet[PACKETS];
+  TcQueue queue;
+  TcPlaced placed;
+  TcGround ground;
+  TcGatherJob job;
+  TcSample again[AGAIN]; /* single precision: rays that are to be walked again */
+  int again_count;
+} State;
+
+/* ── the loop ── */
+
+/* With TC_BOUND, the integral of the scalar's error over a cell of which `length` is crossed (tolerance.h). */
+TC_INLINE TcVec spread_of(const unsigned on, const TcGround *ground, const TcPacket *p, const TcCrossed *crossed, TcVec length) {
+  const TcResolution *r = &ground->resolution;
+  const TcVec beside = tc_madd(tc_set((TcReal)r->relative), p->at.reach, tc_set((TcReal)r->beside)), depth = tc_set((TcReal)r->depth);
+  if (on & TC_WEIGHTS) return tc_madd(beside + beside, tc_madd(length, p->at.tilt.one, p->at.tilt.z), depth);
+  const TcVec change = tc_abs(crossed->s1 - crossed->s0);
+  TcVec tilted = tc_madd(change, p->at.tilt.z, length * (on & TC_CORNERS ? p->at.tilt.one * crossed->range : p->at.tilt.s));
+  if (!(on & TC_CORNERS)) tilted = tc_min(tilted, tc_madd(change, crossed->tilt.z, length * crossed->tilt.s));
+  return tc_madd(beside + beside, tilted, tc_madd(length, tc_set((TcReal)r->value), change * depth));
+}
+
+/* What of the cells just crossed lies beyond what was seen, and within the rays' intervals. Rounding, or a cell that is turned inside out, can make a
+ * face's depth less than that of the face before: such a segment counts for nothing, and the next one for what it has beyond. So lengths along a path
+ * add up to its last depth minus its first, whatever happens in between. Returns the lanes whose rays end here. */
+TC_INLINE TcMask add_segment(const int which, const unsigned on, const TcGround *ground, const TcGatherJob *job, Packet *packet, TcCrossed *crossed,
+                             TcWorker *worker) {
+  TcPacket *p = &packet->walk;
+  const TcVec from = p->seen;
+  TcVec z1 = p->at.z;
+  TcMask moved = crossed->mask;
+  const TcMask ends = tc_and(moved, tc_lt(p->rays.end, z1));
+  TcPassage passage = {.s0 = crossed->s0, .s1 = crossed->s1, .cell = p->from, .walk = p, .crossed = moved, .partial = false};
+  moved = tc_and(moved, tc_gt(z1, from));
+  const TcMask behind = tc_and(moved, tc_lt(crossed->z, from));
+  if (TC_UNLIKELY(tc_any(tc_or(behind, ends)))) { /* at the eye, where the mesh folds, at the ray's end */
+    const TcVec length = z1 - crossed->z, end = tc_min(p->rays.end, z1), change = crossed->s1 - crossed->s0;
+    passage.partial = true;
+    passage.from = tc_select(behind, (from - crossed->z) / length, tc_set(0));
+    passage.to = tc_select(ends, (end - crossed->z) / length, tc_set(1));
+    if (!(on & TC_CELLS)) {
+      passage.s0 = tc_select(behind, tc_madd(passage.from, change, crossed->s0), crossed->s0);
+      passage.s1 = tc_select(ends, tc_madd(passage.to, change, crossed->s0), crossed->s1);
+    }
+    z1 = tc_select(ends, end, z1);
+    moved = tc_and(moved, tc_gt(z1, from));
+  }
+  worker->segments += __builtin_popcount(tc_bits(moved));
+  p->seen = tc_select(moved, z1, from);
+  passage.length = z1 - from;
+  if (on & TC_BOUND) passage.spread = spread_of(on, ground, p, crossed, passage.length);
+  if (on & TC_BOUND && on & TC_ASSOCIATIONS) p->shift += tc_select(moved, tc_packet_shift(ground, p), tc_set(0));
+  tc_gather_segment(which, on, job, &packet->gather, moved, &passage);
+  return ends;
+}
+
+/* Steps of packets until one has to be looked at: because all its lanes have ended, or one that may set out anew has. Of most rays only the face where
+ * they leave is left when they end; they need not be looked at one by one, and what is hard to predict is not branched on. */
+TC_INLINE void advance(const int which, const unsigned on, const TcGround *given_ground, const TcGatherJob *job, TcWorker *worker, Packet *packet) {
+  const TcGround ground = *given_ground;
+  bool halt = false;
+  EACH_PACKET {
+    TcPacket *p = &packet[i].walk;
+    const TcMask starting = tc_mask_of(p->starting);
+    if (p->starting) {
+      tc_packet_set_out(on, &ground, p);
+      tc_gather_enter(which, job, &packet[i].gather, starting, p);
+    }
+    tc_packet_rest(&ground, p, tc_and_not(tc_all(), p->active));
+    tc_packet_expect(&ground, p);
+  }
+  while (!halt) {
+    TcLanePoints q[PACKETS];
+    TcCrossed crossed[PACKETS];
+    TcMask active[PACKETS], lost[PACKETS];
+    unsigned ended[PACKETS];
+    EACH_PACKET tc_packet_look(&ground, &packet[i].walk, &q[i]);
+    EACH_PACKET {
+      TcPacket *p = &packet[i].walk;
+      uint32_t reached;
+      active[i] = p->active;
+      lost[i] = tc_packet_cross(on, &ground, p, &q[i], &crossed[i], &reached);
+      ended[i] = tc_packet_reach(on, &ground, p, reached);
+    }
+    EACH_PACKET {
+      TcPacket *p = &packet[i].walk;
+      crossed[i].mask = tc_and_not(active[i], lost[i]);
+      const TcMask ends = add_segment(which, on, &ground, job, &packet[i], &crossed[i], worker);
+      const TcMask complete = tc_gather_complete(which, on, job, &packet[i].gather, active[i], ++p->steps);
+      const unsigned stop = tc_bits(tc_or(tc_or(lost[i], complete), ends));
+      if (TC_UNLIKELY(stop | ended[i])) {
+        p->stopped |= tc_bits(complete) & ~tc_bits(ends);
+        p->lost |= tc_bits(lost[i]);
+        p->waiting |= ended[i] & ~stop;
+        p->active = tc_and_not(p->active, tc_mask_of(stop | ended[i]));
+        if (stop) {
+          tc_packet_rest(&ground, p, tc_mask_of(stop));
+          tc_packet_expect(&ground, p);
+        }
+        halt = halt || !tc_any(p->active) || p->waiting & p->again;
+      }
+    }
+  }
+  EACH_PACKET {
+    TcPacket *p = &packet[i].walk;
+    if (p->waiting && (!tc_any(p->active) || p->waiting & p->again)) tc_packet_arrive(ground.shell, p);
+  }
+}
+
+#if TC_LANES == 1
+/* The cells of a volume that Embree holds one by one, in the order in which the ray enters them. */
+TC_INLINE void advance_cells(const int which, const unsigned on, const TcGround *ground, const TcGatherJob *job, TcWorker *worker, Packet *packet) {
+  TcPacket *p = &packet->walk;
+  const TcHits *hits = p->hits;
+  for (int64_t i = 0; i < hits->count; ++i) {
+    const uint32_t cell = hits->data[i].id;
+    TcCellFaces faces;
+    if (!tc_cell_faces(on, ground, &p->rays, cell, &faces)) continue;
+    tc_cell_at(on, ground, p, &faces, 0);
+    tc_gather_enter(which, job, &packet->gather, 1, p);
+    TcCrossed crossed = {.mask = 1, .z = p->at.z, .s0 = p->at.s, .tilt = p->at.tilt};
+    if (on & TC_CORNERS) crossed.s0 = tc_cell_corner_value(ground, cell, p);
+    p->seen = tc_max(p->at.z, p->rays.begin); /* of each cell for itself: they may overlap */
+    p->from[0] = cell;
+    tc_cell_at(on, ground, p, &faces, 1);
+    crossed.s1 = on & TC_CORNERS ? tc_cell_corner_value(ground, cell, p) : p->at.s;
+    if (on & TC_CORNERS) crossed.range = tc_cell_range(ground, cell);
+    const TcMask ends = add_segment(which, on, ground, job, packet, &crossed, worker);
+    const TcMask complete = tc_gather_complete(which, on, job, &packet->gather, 1, ++p->steps);
+    if (complete) {
+      p->stopped = 1;
+      break;
+    }
+    (void)ends; /* cells behind the ray's end count for nothing */
+  }
+  p->starting = p->active = 0;
+}
+#endif
+
+typedef void Advance(const TcGround *ground, const TcGatherJob *job, TcWorker *worker, Packet *packet);
+#if TC_LANES == 1
+#define KERNEL(name, gatherer, features)                                                                                      \
+  TC_NOINLINE void walk_##name(const TcGround *ground, const TcGatherJob *job, TcWorker *worker, Packet *packet) {         \
+    advance(TC_GATHER_##gatherer, (features), ground, job, worker, packet);                                                   \
+  }                                                                                                                           \
+  TC_NOINLINE void cells_##name(const TcGround *ground, const TcGatherJob *job, TcWorker *worker, Packet *packet) {   \
+    advance_cells(TC_GATHER_##gatherer, (features), ground, job, worker, packet);                                             \
+  }
+#define KERNEL_ROW(name, gatherer, features) {walk_##name, cells_##name, TC_GATHER_##gatherer, (features)},
+#else
+#define KERNEL(name, gatherer, features)                                                                              \
+  TC_NOINLINE void walk_##name(const TcGround *ground, const TcGatherJob *job, TcWorker *worker, Packet *packet) { \
+    advance(TC_GATHER_##gatherer, (features), ground, job, worker, packet);                                           \
+  }
+#define KERNEL_ROW(name, gatherer, features) {walk_##name, NULL, TC_GATHER_##gatherer, (features)},
+#endif
+#define NO_KERNEL(name, gatherer, features)
+#define NO_ROW(name, gatherer, features) {NULL, NULL, 0, 0},
+#if TC_SINGLE
+#define KERNEL_DOUBLE NO_KERNEL
+#define KERNEL_ONE NO_KERNEL
+#elif TC_LANES > 1
+#define KERNEL_DOUBLE KERNEL
+#define KERNEL_ONE NO_KERNEL
+#else
+#define KERNEL_DOUBLE KERNEL
+#define KERNEL_ONE KERNEL
+#endif
+#include "render/kernels.def"
+#undef KERNEL
+
+/* The rows of kernels.def; those that this number type does not have are empty. */
+static const struct {
+  Advance *advance, *advance_cells;
+  int gatherer;
+  unsigned features;
+} rows[] = {
+#define KERNEL KERNEL_ROW
+#if TC_SINGLE
+#undef KERNEL_DOUBLE
+#define KERNEL_DOUBLE NO_ROW
+#endif
+#if TC_LANES > 1
+#undef KERNEL_ONE
+#define KERNEL_ONE NO_ROW
+#endif
+#include "render/kernels.def"
+#undef KERNEL
+};
+
+/* ── packets ── */
+
+/* Where rays come from. */
+typedef struct Source {
+  bool (*next)(void *user, TcQueue *queue); /* puts the rays of a packet into the queue; false: there are no more */
+  void *user;
+  double *sums; /* where what they gather is added, [destination][job->sums] */
+} Source;
+
+/* A destination is a pixel, and in single precision the ray of it besides. */
+#define DESTINATION(pixel, sample) ((int64_t)(sample) << 32 | (pixel))
+#define PIXEL_OF(destination) ((destination) & UINT32_MAX)
+
+static void begin_packet(const int which, const TcGatherJob *job, TcWaiting *waiting, Packet *packet) {
+  TcPacket *p = &packet->walk;
+  TcHits *hits = waiting->hits;
+  waiting->hits = p->hits;
+  p->hits = hits;
+  p->rays = waiting->rays;
+  p->lanes = waiting->lanes;
+  memcpy(p->destination, waiting->destination, sizeof p->destination);
+  p->active = tc_none();
+  p->starting = p->waiting = p->stopped = p->lost = 0;
+  p->seen = p->rays.begin;
+  p->shift = tc_set(0);
+  p->steps = 0;
+  for (int l = 0; l < TC_LANES; ++l) {
+    p->next[l] = 0;
+    if (p->lanes >> l & 1 && tc_packet_next_start(p, l)) p->starting |= 1U << l;
+  }
+  tc_gather_begin(which, job, &packet->gather);
+  packet->under_way = true;
+}
+
+static void finish_packet(const TcJob *job, State *state, TcWorker *worker, Packet *packet, double *sums) {
+  double gathered[TC_MAX_SUMS][TC_LANES];
+  TcPacket *p = &packet->walk;
+  TcEnding ending = {.stopped = p->stopped, .steps = p->steps};
+  for (int l = 0; l < TC_LANES; ++l) ending.shift[l] = (double)TC_AT(p->shift, l);
+  tc_gather_end(rows[job->kernel].gatherer, rows[job->kernel].features, &state->job, &packet->gather, &ending, gathered);
+  if (!TC_SINGLE) worker->lost += __builtin_popcount(p->lost);
+  for (unsigned lanes = p->lanes; lanes; lanes &= lanes - 1) {
+    const int l = __builtin_ctz(lanes);
+    const int64_t pixel = PIXEL_OF(p->destination[l]);
+#if TC_SINGLE
+    if (p->lost >> l & 1 || !(gathered[job->sums - 1][l] <= job->tolerance.most)) {
+      state->again[state->again_count++] = (TcSample){.pixel = pixel, .sample = (int)(p->destination[l] >> 32)};
+      continue;
+    }
+#endif
+    for (int k = 0; k < job->sums; ++k) sums[pixel * job->sums + k] += gathered[k][l];
+  }
+  packet->under_way = false;
+}
+
+/* The next packet of a source, if there is one. False: out of memory. */
+static bool next_packet(const int which, State *state, const Source *source, Packet *packet) {
+  TcQueue *queue = &state->queue;
+  if (queue->next == queue->count) {
+    queue->next = queue->count = 0;
+    while (queue->count < TC_QUEUE && source->next(source->user, queue)) continue;
+    if (!tc_queue_trace(queue)) return false;
+  }
+  if (queue->next < queue->count) begin_packet(which, &state->job, &queue->waiting[queue->next++], packet);
+  return true;
+}
+
+/* Packets and those that wait each get lists of hits. */
+static void share_hits(State *state, TcWorker *worker) {
+  for (int i = 0; i < PACKETS; ++i) state->packet[i].walk.hits = worker->hits + i * TC_LANES;
+  for (int i = 0; i < TC_QUEUE; ++i) state->queue.waiting[i].hits = worker->hits + (PACKETS + i) * TC_LANES;
+}
+
+static State *prepare(const TcJob *job, TcWorker *worker) {
+  State *state = worker->state;
+  state->ground = (TcGround){.shell = job->shell, .values = job->values, .screen = job->screen, .resolution = job->resolution};
+  state->job = (TcGatherJob){.sums = job->sums, .pieces = job->pieces, .values = job->values, .tolerance = job->tolerance, .sampler = job->sampler,
+                             .coefficients = job->coefficients, .to_the_end = job->to_the_end, .exponent = job->shell->volume->exponent,
+                             .rounding = 8 * 0x1p-53};
+  state->queue.ground = &state->ground;
+  state->queue.next = state->queue.count = 0;
+  state->placed.lanes = 0;
+  state->again_count = 0;
+  for (int i = 0; i < PACKETS; ++i) {
+    TcPacket *p = &state->packet[i].walk;
+    p->active = tc_none();
+    p->starting = p->waiting = 0;
+    state->packet[i].under_way = false;
+#if !TC_SINGLE
+    if (job->coefficients) {
+      double *memory = (double *)(void *)((char *)state + sizeof *state) + (size_t)i * tc_groups_size(job->coefficients);
+      tc_groups_place(job->coefficients, memory, &state->packet[i].gather.groups);
+    }
+#endif
+  }
+  share_hits(state, worker);
+  return state;
+}
+
+/* All packets of a source, several at a time. */
+static bool run_packets(const TcJob *job, State *state, TcWorker *worker, const Source *source) {
+  const int which = rows[job->kernel].gatherer;
+  const bool cells = job->shell->volume->traversal == TETCAST_TRAVERSAL_FACES;
+  Advance *const step = cells ? rows[job->kernel].advance_cells : rows[job->kernel].advance;
+  for (;;) {
+    bool any = false;
+    for (int i = 0; i < (cells ? 1 : PACKETS); ++i) {
+      Packet *packet = &state->packet[i];
+      while (!tc_packet_runs(&packet->walk)) {
+        if (packet->under_way) finish_packet(job, state, worker, packet, source->sums);
+        if (!next_packet(which, state, source, packet)) return false;
+        if (!packet->under_way) break;
+      }
+      any = any || packet->under_way;
+    }
+    if (!any) return true;
+    step(&state->ground, &state->job, worker, state->packet);
+  }
+}
+
+/* ── a tile ── */
+
+enum { PACKET_X = TC_LANES == 1 ? 1 : TC_LANES == 4 ? 2 : 4, PACKET_Y = TC_LANES / PACKET_X }; /* a packet's pixels */
+
+typedef struct Tile {
+  const TcJob *job;
+  const State *state;
+  TcPlaced *placed;
+  int64_t x0, y0, x1, y1;
+  int64_t x, y; /* of the packet whose rays come next */
+  int sample;
+} Tile;
+
+/* Places the rays of samples of pixels, one in each lane. */
+static void place_samples(const TcJob *job, const double x[TC_LANES], const double y[TC_LANES], const int sample[TC_LANES], TcPlaced *placed) {
+  TcLines *lines = &placed->lines;
+  const double samples_x = job->samples_x, samples_y = job->samples_y;
+  double u[TC_LANES], v[TC_LANES];
+  for (int l = 0; l < TC_LANES; ++l) {
+    const double column = x[l] * samples_x + sample[l] % job->samples_x + 0.5, row = y[l] * samples_y + sample[l] / job->samples_x + 0.5;
+    u[l] = 2 * column / ((double)job->width * samples_x) - 1;
+    v[l] = 1 - 2 * row / ((double)job->height * samples_y);
+    lines->begin[l] = 0;
+    lines->end[l] = INFINITY;
+    if (job->screen) {
+      lines->x[l] = column / samples_x - job->screen->x0;
+      lines->y[l] = row / samples_y - job->screen->y0;
+    }
+  }
+  tc_view_lines(&job->view, u, v, lines);
+  tc_place_all(job->shell->volume, placed);
+}
+
+/* Places the rays of the next packet of pixels. */
+static void place_next(Tile *tile) {
+  const TcJob *job = tile->job;
+  TcPlaced *placed = tile->placed;
+  double px[TC_LANES], py[TC_LANES];
+  int sample[TC_LANES];
+  placed->lanes = 0;
+  for (int l = 0; l < TC_LANES; ++l) {
+    const int64_t x = tile->x + l % PACKET_X, y = tile->y + l / PACKET_X;
+    px[l] = (double)x;
+    py[l] = (double)y;
+    sample[l] = tile->sample;
+    placed->destination[l] = DESTINATION((y - tile->y0) * (tile->x1 - tile->x0) + (x - tile->x0), tile->sample);
+    if (x < tile->x1 && y < tile->y1) placed->lanes |= 1U << l;
+  }
+  place_samples(job, px, py, sample, placed);
+  if (++tile->sample < job->samples_x * job->samples_y) return;
+  tile->sample = 0;
+  tile->y += PACKET_Y; /* so that two packets in turn fill a square, or nearly */
+  if (tile->y < tile->y1) return;
+  tile->y = tile->y0;
+  tile->x += PACKET_X;
+}
+
+static bool next_of_tile(void *user, TcQueue *queue) {
+  Tile *tile = user;
+  if (TC_SINGLE && tile->state->again_count > AGAIN - (PACKETS + TC_QUEUE) * TC_LANES) return false; /* these first */
+  while (!tile->placed->lanes && tile->x < tile->x1) place_next(tile);
+  if (!tile->placed->lanes) return false;
+  tc_enqueue(tile->placed, queue);
+  return true;
+}
+
+#if TC_SINGLE
+/* Walks those rays again in double precision for which single precision would not do. */
+static bool walk_again(const Tile *tile, State *state, TcWorker *worker, double *sums) {
+  const TcJob *job = tile->job;
+  for (int i = 0; i < state->again_count; ++i) {
+    TcSample *again = &state->again[i];
+    again->x = tile->x0 + again->pixel % (tile->x1 - tile->x0);
+    again->y = tile->y0 + again->pixel / (tile->x1 - tile->x0);
+  }
+  void *const mine = worker->state;
+  worker->state = worker->precise_state;
+  const bool ok = state->again_count == 0 || job->precise->samples(job->precise_job, state->again, state->again_count, worker, sums);
+  worker->state = mine;
+  worker->again += state->again_count;
+  state->again_count = 0;
+  return ok;
+}
+#endif
+
+static bool render_tile(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker, double *sums) {
+  State *state = prepare(job, worker);
+  Tile tile = {.job = job, .state = state, .placed = &state->placed, .x0 = x0, .y0 = y0, .x1 = x1, .y1 = y1, .x = x0, .y = y0};
+  const Source source = {next_of_tile, &tile, sums};
+  do {
+    if (!run_packets(job, state, worker, &source)) return false;
+#if TC_SINGLE
+    if (!walk_again(&tile, state, worker, sums)) return false;
+#endif
+  } while (tile.x < tile.x1);
+  return true;
+}
+
+/* ── some rays of a picture ── */
+
+typedef struct Samples {
+  const TcJob *job;
+  TcPlaced *placed;
+  const TcSample *samples;
+  int64_t count, next;
+} Samples;
+
+static void place_some(Samples *some) {
+  TcPlaced *placed = some->placed;
+  double x[TC_LANES], y[TC_LANES];
+  int sample[TC_LANES];
+  placed->lanes = 0;
+  for (int l = 0; l < TC_LANES; ++l) {
+    const TcSample *s = &some->samples[some->next < some->count ? some->next : 0];
+    x[l] = (double)s->x;
+    y[l] = (double)s->y;
+    sample[l] = s->sample;
+    placed->destination[l] = s->pixel;
+    if (some->next++ < some->count) placed->lanes |= 1U << l;
+  }
+  place_samples(some->job, x, y, sample, placed);
+}
+
+static bool next_of_samples(void *user, TcQueue *queue) {
+  Samples *some = user;
+  while (!some->placed->lanes && some->next < some->count) place_some(some);
+  if (!some->placed->lanes) return false;
+  tc_enqueue(some->placed, queue);
+  return true;
+}
+
+static bool render_samples(const TcJob *job, const TcSample *samples, int64_t count, TcWorker *worker, double *sums) {
+  State *state = prepare(job, worker);
+  Samples some = {.job = job, .placed = &state->placed, .samples = samples, .count = count};
+  const Source source = {next_of_samples, &some, sums};
+  return run_packets(job, state, worker, &source);
+}
+
+/* ── any rays ── */
+
+typedef struct Cast {
+  const TcJob *job;
+  TcPlaced *placed;
+  const TcLine *lines;
+  int64_t count, next; /* rays, and the first of those that have not been placed */
+} Cast;
+
+static void place_cast(Cast *cast) {
+  TcPlaced *placed = cast->placed;
+  placed->lanes = 0;
+  for (int l = 0; l < TC_LANES; ++l) {
+    const TcLine *line = &cast->lines[cast->next < cast->count ? cast->next : 0];
+    for (int k = 0; k < 3; ++k) {
+      placed->lines.eye[k][l] = line->eye[k];
+      placed->lines.offset[k][l] = line->offset[k];
+      placed->lines.direction[k][l] = line->direction[k];
+    }
+    placed->lines.begin[l] = line->begin;
+    placed->lines.end[l] = line->end;
+    placed->destination[l] = cast->next;
+    if (cast->next++ < cast->count) placed->lanes |= 1U << l;
+  }
+  tc_place_all(cast->job->shell->volume, placed);
+}
+
+static bool next_of_cast(void *user, TcQueue *queue) {
+  Cast *cast = user;
+  while (!cast->placed->lanes && cast->next < cast->count) place_cast(cast);
+  if (!cast->placed->lanes) return false;
+  tc_enqueue(cast->placed, queue);
+  return true;
+}
+
+static bool cast_lines(const TcJob *job, const TcLine *lines, int64_t count, TcWorker *worker, double *sums) {
+  State *state = prepare(job, worker);
+  Cast cast = {.job = job, .placed = &state->placed, .lines = lines, .count = count};
+  const Source source = {next_of_cast, &cast, sums};
+  return run_packets(job, state, worker, &source);
+}
+
+#include "walk/project.h"
+
+static void project(const TcJob *job, TcScreen *screen, int64_t begin, int64_t end) {
+  for (int64_t i = begin; i < end; i += TC_PROJECTED) {
+    tc_project_some(job->shell->volume, job->values, &job->view, screen, i, end - i < TC_PROJECTED ? (int)(end - i) : TC_PROJECTED);
+  }
+}
+
+static size_t state_size(const TcJob *job) {
+#if TC_SINGLE
+  (void)job;
+  return sizeof(State);
+#else
+  return sizeof(State) + (job->coefficients ? PACKETS * tc_groups_size(job->coefficients) * sizeof(double) : 0);
+#endif
+}
+
+#define TABLE_NAME_(name) tc_kernels_##name
+#define TABLE_NAME(name) TABLE_NAME_(name)
+
+const TcIsaKernels TABLE_NAME(TC_LANES_NAME) = {
+  .name = TC_LANES == 1 ? "scalar" : TC_LANES == (TC_SINGLE ? 8 : 4) ? "avx2" : "avx512",
+  .precision = TC_SINGLE ? "single" : "double",
+  .lanes = TC_LANES,
+  .state_size = state_size,
+  .vertex_size = 4 * sizeof(TcReal),
+  .project = project,
+  .tile = render_tile,
+  .samples = render_samples,
+  .cast = cast_lines,
+};

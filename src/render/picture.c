@@ -1,0 +1,330 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Pictures of scenes: which kernel makes them, where vertices are projected, tiles and workers. */
+#include <math.h>
+#include <string.h>
+
+#include "base/cpu.h"
+#include "base/parallel.h"
+#include "optics/sampled.h"
+#include "render/render.h"
+
+/* ── the choice among kernels ── */
+
+const TcIsaKernels *tc_kernels_for(TetcastIsa most) {
+  static const struct {
+    TetcastIsa isa;
+    const TcIsaKernels *kernels;
+  } all[] = {
+#ifdef TC_HAVE_X86
+    {TETCAST_ISA_AVX512, &tc_kernels_avx512},
+    {TETCAST_ISA_AVX2, &tc_kernels_avx2},
+#endif
+    {TETCAST_ISA_SCALAR, &tc_kernels_one},
+  };
+  for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
+    if ((most == TETCAST_ISA_AUTO || all[i].isa <= most) && tc_cpu_has(all[i].isa)) return all[i].kernels;
+  }
+  return &tc_kernels_one;
+}
+
+const TcIsaKernels *tc_single_kernels_for(TetcastIsa most) {
+#ifdef TC_HAVE_X86
+  const TcIsaKernels *kernels = tc_kernels_for(most);
+  if (kernels == &tc_kernels_avx512) return &tc_kernels_avx512_f32;
+  if (kernels == &tc_kernels_avx2) return &tc_kernels_avx2_f32;
+#else
+  (void)most;
+#endif
+  return NULL;
+}
+
+/* The first row of a gatherer that has all of these features, and just this association. */
+static int choose_row(const char *gatherer, unsigned needed) {
+  static const struct {
+    const char *gatherer;
+    unsigned features;
+  } rows[] = {
+#define KERNEL(name, gatherer, features) {#gatherer, (features)},
+#define KERNEL_DOUBLE KERNEL
+#define KERNEL_ONE KERNEL
+#include "render/kernels.def"
+#undef KERNEL
+#undef KERNEL_DOUBLE
+#undef KERNEL_ONE
+  };
+  for (int i = 0; i < TC_KERNELS; ++i) {
+    if (strcmp(rows[i].gatherer, gatherer) == 0 && (rows[i].features & needed) == needed &&
+        (rows[i].features & TC_ASSOCIATIONS) == (needed & TC_ASSOCIATIONS)) {
+      return i;
+    }
+  }
+  return -1; /* not with the rows there are */
+}
+
+static unsigned association_of(const TcRows *values) {
+  return values->association == TETCAST_CELL ? TC_CELLS : values->association == TETCAST_CORNER ? TC_CORNERS : 0;
+}
+
+static void see_through(const TcRows *values, const TcPieces *pieces, unsigned measured, TcJob *job) {
+  job->values = values;
+  job->pieces = pieces;
+  job->sums = 5;
+  job->tolerance = tc_tolerance_begin(pieces, 0);
+  const unsigned needed = (pieces->one_color ? 0 : TC_COLORED) | (pieces->scaled ? TC_SCALED : 0) | measured;
+  job->kernel = choose_row(job->sampler ? "sampled" : "emission", (job->sampler ? 0 : needed) | association_of(values));
+}
+
+void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job) {
+  const unsigned measured = bound ? TC_BOUND : 0;
+  if (scene->coefficients) {
+    job->shell = &scene->volume->shell;
+    job->coefficients = scene->coefficients;
+    job->sums = 3 * scene->coefficients->groups + 3;
+    job->kernel = choose_row("groups", TC_WEIGHTS | TC_CELLS | measured);
+    return;
+  }
+  see_through(scene->values, &scene->prepared->scaled->pieces, measured, job);
+  job->shell = &scene->prepared->shell;
+}
+
+void tc_job_of(const TetcastVolume *volume, const TcRows *values, const TcPieces *pieces, TcJob *job) {
+  see_through(values, pieces, 0, job);
+  job->shell = &volume->shell;
+}
+
+/* ── workers ── */
+
+bool tc_worker_begin(TetcastContext *context, const TcIsaKernels *kernels, const TcJob *job, TcWorker *worker) {
+  memset(worker, 0, sizeof *worker);
+  for (int i = 0; i < TC_HIT_LISTS; ++i) worker->hits[i].context = context;
+  const size_t size = kernels->state_size(job);
+  worker->state = tc_allocate(context, 1, size);
+  if (!worker->state) return false;
+  memset(worker->state, 0, size);
+  if (!job->precise) return true;
+  const size_t precise_size = job->precise->state_size(job->precise_job);
+  worker->precise_state = tc_allocate(context, 1, precise_size);
+  if (worker->precise_state) memset(worker->precise_state, 0, precise_size);
+  return worker->precise_state != NULL;
+}
+
+void tc_worker_end(TetcastContext *context, TcWorker *worker) {
+  for (int i = 0; i < TC_HIT_LISTS && worker->hits[i].context; ++i) tc_hits_clear(&worker->hits[i]);
+  tc_release(context, worker->state);
+  tc_release(context, worker->precise_state);
+}
+
+bool tc_worker_failed(const TcWorker *worker) {
+  for (int i = 0; i < TC_HIT_LISTS; ++i) {
+    if (worker->hits[i].out_of_memory) return true;
+  }
+  return false;
+}
+
+/* ── a frame ── */
+
+typedef struct Working {
+  TcWorker worker;
+  double *sums; /* [TC_TILE²][job.sums] */
+  double error; /* largest bound so far */
+} Working;
+
+typedef struct Render {
+  TcJob job, precise;
+  const TetcastScene *scene;
+  TetcastFrame *frame;
+  const TcIsaKernels *kernels;
+  TcScreen screen, precise_screen;
+  Working *workers;
+  int64_t tiles_x, tiles_y;
+} Render;
+
+static bool render_tile(const Render *render, int64_t tile_x, int64_t tile_y, Working *working) {
+  const TcJob *job = &render->job;
+  const int64_t x0 = tile_x * TC_TILE, y0 = tile_y * TC_TILE;
+  const int64_t x1 = x0 + TC_TILE < job->width ? x0 + TC_TILE : job->width, y1 = y0 + TC_TILE < job->height ? y0 + TC_TILE : job->height;
+  const int64_t numbers = (x1 - x0) * (y1 - y0) * job->sums;
+  const double samples = job->samples_x * job->samples_y;
+  memset(working->sums, 0, (size_t)numbers * sizeof *working->sums);
+  if (!render->kernels->tile(job, x0, y0, x1, y1, &working->worker, working->sums)) return false;
+  for (int64_t i = 0; samples > 1 && i < numbers; ++i) working->sums[i] /= samples;
+  TcGathered gathered = {.sums = working->sums, .coefficients = job->coefficients, .exponent = job->shell->volume->exponent};
+  for (int64_t y = y0; y < y1; ++y) {
+    for (int64_t x = x0; x < x1; ++x, gathered.sums += job->sums) {
+      const double bound = tc_frame_store(render->frame, x, y, &gathered);
+      if (!(bound <= working->error)) working->error = bound;
+    }
+  }
+  return true;
+}
+
+/* Every other bit of i, put together: the place along one axis of the i-th square of Morton's curve. */
+static int64_t even_bits(int64_t i) {
+  int64_t result = 0;
+  for (int bit = 0; i >> 2 * bit; ++bit) result |= (i >> 2 * bit & 1) << bit;
+  return result;
+}
+
+/* Tiles follow each other along Morton's curve, so that cells that were walked through are met again soon. */
+static bool render_tiles(void *data, int64_t begin, int64_t end, int worker) {
+  Render *render = data;
+  for (int64_t i = begin; i < end; ++i) {
+    const int64_t x = even_bits(i), y = even_bits(i >> 1);
+    if (x >= render->tiles_x || y >= render->tiles_y) continue;
+    if (!render_tile(render, x, y, &render->workers[worker])) return false;
+  }
+  return true;
+}
+
+/* A grid of exactly `samples`, as near to square as its divisors allow, not higher than wide. */
+static void sample_grid(int samples, int *x, int *y) {
+  *y = 1;
+  for (int i = 2; i * i <= samples; ++i) {
+    if (samples % i == 0) *y = i;
+  }
+  *x = samples / *y;
+}
+
+/* ── vertices on the screen ── */
+
+typedef struct Projection {
+  const TcIsaKernels *kernels;
+  const TcJob *job;
+  TcScreen *screen;
+} Projection;
+
+static bool project_some(void *data, int64_t begin, int64_t end, int worker) {
+  (void)worker;
+  const Projection *p = data;
+  p->kernels->project(p->job, p->screen, begin, end);
+  return true;
+}
+
+/* To project a vertex takes about as long as a dozen steps of a ray save by it: small pictures of large meshes, and those of which little is seen, are not
+ * worth it. Most rays cross some of the cells along one edge of a cube of as many. */
+static bool worth_projecting(const TetcastScene *scene, int64_t rays, const TcJob *job) {
+  const double cells = (double)scene->volume->cell_count, crossings = 0.5 * (double)rays * cbrt(cells);
+  return !job->shell->visible && crossings > 3 * (double)scene->volume->vertex_count;
+}
+
+/* Projects vertices, if that pays and there is memory; `screen` is part of the job then. */
+static void project(const TetcastScene *scene, const TcIsaKernels *kernels, const TcScreen *setup, TcJob *job, TcScreen *screen) {
+  const bool single = kernels->vertex_size < 4 * sizeof(double);
+  const int64_t count = scene->volume->vertex_count;
+  void *vertices = tc_scene_swap_vertices(scene, single, NULL);
+  if (!vertices) vertices = tc_allocate(scene->context, count, kernels->vertex_size);
+  if (!vertices) return;
+  *screen = *setup;
+  screen->vertices = vertices;
+  Projection projection = {kernels, job, screen};
+  tc_parallel_for(scene->context, count, 1 << 14, project_some, &projection, NULL);
+  job->screen = screen;
+}
+
+static void keep_vertices(const TetcastScene *scene, const TcJob *job, bool single) {
+  if (job->screen) tc_release(scene->context, tc_scene_swap_vertices(scene, single, job->screen->vertices));
+}
+
+/* ── all of it ── */
+
+/* Single precision, where a bound on what it costs leaves enough of the tolerance. */
+static bool allow_single(const TetcastScene *scene, const TetcastRenderDesc *desc, const TcScreen *setup, Render *render) {
+  const TcIsaKernels *kernels = tc_single_kernels_for(desc->isa);
+  TcJob *job = &render->job;
+  double values;
+  if (!kernels || !(desc->tolerance > 0) || job->values->association != TETCAST_POINT || isnan(scene->values->largest)) return false;
+  if (!tc_tolerance_single(job->pieces, desc->tolerance, scene->values->largest, 2 * scene->volume->radius, &job->tolerance, &values)) return false;
+  render->precise = *job;
+  render->precise.tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);
+  job->precise = render->kernels;
+  job->precise_job = &render->precise;
+  render->kernels = kernels;
+  job->resolution = tc_screen_resolution(scene->volume, setup, true, job->width, job->height, values);
+  return true;
+}
+
+static void plan(const TetcastScene *scene, const TetcastRenderDesc *desc, bool measured, Render *render) {
+  TcJob *job = &render->job;
+  TcScreen setup;
+  const int64_t rays = job->width * job->height * desc->samples;
+  const bool on_screen = scene->volume->traversal == TETCAST_TRAVERSAL_SHELL && worth_projecting(scene, rays, job) &&
+                         tc_screen_setup(scene->volume, &job->view, job->width, job->height, &setup);
+  double away2 = 0;
+  for (int k = 0; k < 3; ++k) away2 += (scene->volume->center[k] - job->view.eye[k]) * (scene->volume->center[k] - job->view.eye[k]);
+  const double largest = scene->values ? scene->values->largest : 0;
+  const TcResolution in_ray_space = tc_ray_resolution(scene->volume, sqrt(away2), largest);
+  job->resolution = on_screen ? tc_screen_resolution(scene->volume, &setup, false, job->width, job->height, largest)
+                              : in_ray_space;
+  if (!scene->coefficients) job->tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);
+  if (!on_screen) return;
+  if (measured && !scene->coefficients && allow_single(scene, desc, &setup, render)) {
+    project(scene, render->kernels, &setup, job, &render->screen);
+    render->precise.resolution = in_ray_space; /* where rays are walked again, which are few */
+    if (job->screen) return;
+    render->kernels = job->precise;
+    *job = render->precise;
+  }
+  project(scene, render->kernels, &setup, job, &render->screen);
+}
+
+/* Renders with all that is needed at hand, and sums up what the workers counted. */
+static TetcastStatus run(Render *render, const TetcastProgress *progress, TetcastRenderStats *stats) {
+  TetcastContext *context = render->scene->context;
+  const int threads = tc_context_threads(context);
+  if (!tc_allocate_array(context, (void **)&render->workers, threads, sizeof *render->workers, "workers")) return TETCAST_ERROR_MEMORY;
+  bool ok = true;
+  for (int i = 0; i < threads; ++i) {
+    Working *w = &render->workers[i];
+    ok = tc_worker_begin(context, render->kernels, &render->job, &w->worker) && ok;
+    w->sums = tc_allocate(context, TC_TILE * TC_TILE * (int64_t)render->job.sums, sizeof *w->sums);
+    w->error = 0;
+    ok = ok && w->sums;
+  }
+  render->tiles_x = (render->job.width + TC_TILE - 1) / TC_TILE;
+  render->tiles_y = (render->job.height + TC_TILE - 1) / TC_TILE;
+  int64_t side = 1;
+  while (side < render->tiles_x || side < render->tiles_y) side *= 2;
+  TetcastStatus status = ok ? tc_parallel_for(context, side * side, 1, render_tiles, render, progress)
+                            : tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: workers");
+  for (int i = 0; i < threads; ++i) {
+    Working *w = &render->workers[i];
+    stats->segments += w->worker.segments;
+    stats->lost += w->worker.lost;
+    if (!(w->error <= stats->error)) stats->error = w->error;
+    if (tc_worker_failed(&w->worker)) status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: hits of a ray");
+    tc_worker_end(context, &w->worker);
+    tc_release(context, w->sums);
+  }
+  tc_release(context, render->workers);
+  return status;
+}
+
+TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
+                              TetcastFrame *frame, TetcastRenderStats *stats) {
+  TetcastContext *context = scene->context;
+  const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
+  const bool measured = exact && (desc->tolerance > 0 || tc_frame_channel(frame, TETCAST_CHANNEL_ERROR));
+  Render render = {.scene = scene, .frame = frame};
+  TcJob *job = &render.job;
+  job->width = frame->width;
+  job->height = frame->height;
+  sample_grid(desc->samples, &job->samples_x, &job->samples_y);
+  TetcastStatus status = tc_view_create(context, camera, scene->volume, (double)frame->width / (double)frame->height, &job->view);
+  if (!status && !scene->coefficients) status = tc_scene_prepare(scene);
+  TcSampler *sampler = NULL;
+  if (!status && !exact) status = tc_sampler_create(context, desc->integrator, desc->integrator_n, &sampler);
+  if (status) return status;
+  job->sampler = sampler;
+  job->to_the_end = tc_frame_channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH) || tc_frame_channel(frame, TETCAST_CHANNEL_PATH_LENGTH);
+  tc_job_of_scene(scene, measured, job);
+  const bool one_by_one = sampler || scene->volume->traversal == TETCAST_TRAVERSAL_FACES;
+  render.kernels = tc_kernels_for(one_by_one ? TETCAST_ISA_SCALAR : desc->isa);
+  plan(scene, desc, measured, &render); /* which may take those in single precision */
+  TetcastRenderStats sum = {.rays = frame->width * frame->height * desc->samples, .isa = render.kernels->name, .precision = render.kernels->precision};
+  status = run(&render, &desc->progress, &sum);
+  keep_vertices(scene, job, job->precise != NULL);
+  tc_sampler_destroy(sampler);
+  if (!measured) sum.error = NAN;
+  if (!status && stats) *stats = sum;
+  return status;
+}

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Fields in the order of a volume: a row of numbers for each of its vertices or cells. Scenes bind fields by them; those that bind the same ones share
+ * the rows. */
+#ifndef TC_VOLUME_ROWS_H
+#define TC_VOLUME_ROWS_H
+
+#include "volume/volume.h"
+
+/* Values of larger magnitude count as infinite: differences of two of them could overflow. */
+#define TC_LARGEST_VALUE 0x1p1022
+
+/* A scalar whose values are all below 2^−TC_TINY_FIELD is stored times 2^TC_TINY_FIELD, so that interpolation does not underflow. */
+#define TC_TINY_FIELD 500
+
+typedef struct TcRows {
+  const TetcastVolume *volume;
+  TetcastAssociation association;
+  int width;        /* numbers in a row, one of each field */
+  bool is_double;   /* or float, which they are when all fields came as that */
+  int64_t count;    /* rows: vertices or cells of the volume */
+  void *data;       /* [count][width]; what is not finite, or too large, is NaN */
+
+  /* Of a scalar that is seen through a transfer function: */
+  int exponent;      /* stored times 2^−exponent */
+  float (*range)[2]; /* [clusters]: all values of a cluster lie in it, NaN apart; (∞, −∞) if there are none but NaN. NULL: no clusters */
+  double largest;    /* of its finite magnitudes, as stored */
+
+  /* What is shared. */
+  struct TcRows *next;
+  int64_t users;
+  int64_t serial; /* of the one field that it was made from, 0: not to be shared */
+} TcRows;
+
+/* The rows that scenes of a volume use now. */
+typedef struct TcRowsCache TcRowsCache;
+
+TetcastStatus tc_rows_cache_create(TetcastContext *context, TcRowsCache **cache);
+void tc_rows_cache_destroy(TcRowsCache *cache);
+size_t tc_rows_cache_bytes(TcRowsCache *cache); /* of the rows that there are */
+
+/* A scalar for a transfer function. A field that may not change (TETCAST_COPY) is shared by all that ask for it. The field must have as many values as
+ * the volume's mesh had vertices or cells (TETCAST_ERROR_ARGUMENT). */
+TetcastStatus tc_rows_of_scalar(const TetcastVolume *volume, const TetcastField *field, TcRows **rows);
+
+/* `width` fields of one association next to each other, as they are. Their numbers of values have been checked. */
+TetcastStatus tc_rows_of_fields(const TetcastVolume *volume, const TetcastField *const *fields, int width, TcRows **rows);
+
+/* One user less; NULL does nothing. */
+void tc_rows_release(TcRows *rows);
+
+/* Number i of all. */
+static inline double tc_rows_number(const TcRows *rows, int64_t i) {
+  return rows->is_double ? ((const double *)rows->data)[i] : (double)((const float *)rows->data)[i];
+}
+
+static inline double tc_rows_value(const TcRows *rows, int64_t row, int column) { return tc_rows_number(rows, row * rows->width + column); }
+
+#endif

@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "volume/volume.h"
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/parallel.h"
+#include "mesh/order.h"
+#include "mesh/stage.h"
+#include "volume/rows.h"
+
+/* Resident: 25 bytes per cell (20, its source, and its share of a cluster), 16 or 28 per vertex (the position and its source), 16 per shell face and
+ * what Embree takes; a field of scenes, 4 or 8 per vertex. While preparing, 48 per cell and 4 per vertex more at most (adjacency.c); Embree begins when that is given back. */
+
+enum { GRAIN = 1 << 14 };
+
+static bool shell_only(const TetcastVolume *volume) { return volume->traversal == TETCAST_TRAVERSAL_SHELL; }
+
+static void grow(const TetcastVolume *volume, uint32_t vertex, double low[3], double high[3]) {
+  double v[3];
+  tc_volume_vertex(volume, vertex, v);
+  for (int k = 0; k < 3; ++k) {
+    low[k] = v[k] < low[k] ? v[k] : low[k];
+    high[k] = v[k] > high[k] ? v[k] : high[k];
+  }
+}
+
+void tc_shell_bounds(const void *user, uint32_t i, double low[3], double high[3]) {
+  const TcShell *shell = user;
+  const uint32_t *vertices = shell->faces ? shell->faces[i].vertex : shell->volume->adjacency.vertices[i];
+  for (int k = 0; k < 3; ++k) {
+    low[k] = INFINITY;
+    high[k] = -INFINITY;
+  }
+  for (int j = 0; j < (shell->faces ? 3 : 4); ++j) grow(shell->volume, vertices[j], low, high);
+}
+
+/* What the loops over vertices need. */
+typedef struct Take {
+  const TetcastVolume *volume;
+  const TetcastMesh *mesh;
+  double scale[2]; /* their product is the power of two to multiply with, which alone could overflow */
+  uint32_t *rank;
+} Take;
+
+static bool take_positions(void *data, int64_t begin, int64_t end, int worker) {
+  (void)worker;
+  const Take *take = data;
+  const TetcastVolume *volume = take->volume;
+  for (int64_t i = begin; i < end; ++i) {
+    double p[3];
+    tc_mesh_vertex(take->mesh, volume->vertex_source[i], p);
+    for (int k = 0; k < 3; ++k) {
+      const double x = tc_without_tiny(p[k] * take->scale[0] * take->scale[1]);
+      if (volume->positions_are_double) ((double *)volume->positions)[3 * i + k] = x;
+      else ((float *)volume->positions)[3 * i + k] = (float)x;
+    }
+  }
+  return true;
+}
+
+static bool take_ranks(void *data, int64_t begin, int64_t end, int worker) {
+  (void)worker;
+  const Take *take = data;
+  for (int64_t i = begin; i < end; ++i) take->rank[take->volume->vertex_source[i]] = (uint32_t)i;
+  return true;
+}
+
+static TetcastStatus take_vertices(TetcastVolume *volume, const TetcastMesh *mesh) {
+  double largest = 0;
+  for (int k = 0; k < 6; ++k) largest = fmax(largest, fabs(mesh->bounds[k]));
+  if (largest > 0) frexp(largest, &volume->exponent);
+  volume->positions_are_double = mesh->vertices.type == TETCAST_TYPE_FLOAT64;
+  const size_t size = volume->positions_are_double ? sizeof(double) : sizeof(float);
+  if (!tc_allocate_array(volume->context, &volume->positions, 3 * volume->vertex_count + 1, size, "vertices")) {
+    return TETCAST_ERROR_MEMORY;
+  }
+  memset((char *)volume->positions + 3 * (size_t)volume->vertex_count * size, 0, size);
+  const int half = -volume->exponent / 2;
+  Take take = {.volume = volume, .mesh = mesh, .scale = {ldexp(1, half), ldexp(1, -volume->exponent - half)}};
+  tc_parallel_for(volume->context, volume->vertex_count, GRAIN, take_positions, &take, NULL);
+  double diagonal2 = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double low = ldexp(mesh->bounds[2 * k], -volume->exponent), high = ldexp(mesh->bounds[2 * k + 1], -volume->exponent);
+    volume->center[k] = 0.5 * low + 0.5 * high;
+    diagonal2 += (high - low) * (high - low);
+  }
+  /* Coordinates are at most 1: what is added covers the rounding of the centre and of distances to it. */
+  volume->radius = 0.5 * sqrt(diagonal2) * (1 + 0x1p-48) + 0x1p-50;
+  return TETCAST_OK;
+}
+
+static bool take_corners(void *data, int64_t begin, int64_t end, int worker) {
+  (void)worker;
+  const Take *take = data;
+  for (int64_t i = begin; i < end; ++i) {
+    uint32_t v[4], order = 0;
+    tc_mesh_cell(take->mesh, take->volume->adjacency.source[i], v);
+    for (int k = 0; k < 4; ++k) v[k] = take->rank[v[k]];
+    for (int k = 0; k < 4; ++k) {
+      const int place = (v[k] > v[0]) + (v[k] > v[1]) + (v[k] > v[2]) + (v[k] > v[3]);
+      order |= (uint32_t)k << 2 * place;
+    }
+    take->volume->corner_order[i] = (uint8_t)order;
+  }
+  return true;
+}
+
+static TetcastStatus order_corners(TetcastVolume *volume, Take *take) {
+  const int64_t count = volume->adjacency.cell_count;
+  if (!tc_allocate_array(volume->context, (void **)&volume->corner_order, count, 1, "corners")) return TETCAST_ERROR_MEMORY;
+  tc_parallel_for(volume->context, count, GRAIN, take_corners, take, NULL);
+  return TETCAST_OK;
+}
+
+/* The adjacency in the numbering of volume->vertex_source. */
+static TetcastStatus take_cells(TetcastVolume *volume, const TetcastMesh *mesh, bool corners, const TetcastProgress *progress) {
+  Take take = {.volume = volume, .mesh = mesh};
+  if (!tc_allocate_array(volume->context, (void **)&take.rank, volume->vertex_count, sizeof *take.rank, "vertices")) {
+    return TETCAST_ERROR_MEMORY;
+  }
+  tc_parallel_for(volume->context, volume->vertex_count, GRAIN, take_ranks, &take, NULL);
+  TcAdjacency *adjacency = &volume->adjacency;
+  TetcastStatus status = tc_adjacency_build(mesh, take.rank, true, progress, adjacency);
+  if (!status && corners) status = order_corners(volume, &take);
+  tc_release(volume->context, take.rank);
+  if (status || !shell_only(volume)) return status;
+  const uint32_t end = (uint32_t)adjacency->cell_count; /* a cell from which nothing leads on, for lanes that rest */
+  adjacency->cells[adjacency->cell_count] = (TcCell){0, {end, end, end, end}};
+  status = tc_clusters_build(volume->context, adjacency, (const uint32_t(*)[4])adjacency->vertices, &volume->clusters);
+  tc_release(volume->context, adjacency->vertices);
+  adjacency->vertices = NULL;
+  return status;
+}
+
+static double triangle_area(const TetcastVolume *volume, const uint32_t vertex[3]) {
+  double p[3][3], e[2][3];
+  for (int j = 0; j < 3; ++j) tc_volume_vertex(volume, vertex[j], p[j]);
+  for (int j = 0; j < 2; ++j) {
+    for (int k = 0; k < 3; ++k) e[j][k] = p[j + 1][k] - p[0][k];
+  }
+  const double x = e[0][1] * e[1][2] - e[0][2] * e[1][1], y = e[0][2] * e[1][0] - e[0][0] * e[1][2],
+               z = e[0][0] * e[1][1] - e[0][1] * e[1][0];
+  return 0.5 * sqrt(x * x + y * y + z * z);
+}
+
+static void describe(TetcastVolume *volume, const TetcastMesh *mesh) {
+  TetcastVolumeInfo *info = &volume->info;
+  info->vertices = volume->vertex_count;
+  info->tetrahedra = volume->cell_count;
+  info->left_out = volume->mesh_cell_count - volume->cell_count;
+  memcpy(info->bounds, mesh->bounds, sizeof info->bounds);
+  info->shell_faces = shell_only(volume) ? volume->adjacency.shell_count : volume->cell_count;
+  info->traversal = volume->traversal;
+  double area = 0;
+  for (int64_t i = 0; i < volume->adjacency.shell_count; ++i) area += triangle_area(volume, volume->adjacency.shell[i].vertex);
+  info->boundary_area = ldexp(ldexp(area, volume->exponent), volume->exponent);
+}
+
+static TetcastStatus build(TetcastVolume *volume, const TetcastMesh *mesh, const TetcastVolumeDesc *desc) {
+  TcStage stage;
+  TetcastStatus status = tc_order_vertices(mesh, &volume->vertex_source);
+  if (!status) status = take_vertices(volume, mesh);
+  if (!status) status = take_cells(volume, mesh, desc->corners, tc_stage(&stage, &desc->progress, 0.1, 1));
+  if (status) return status;
+  volume->cell_count = volume->adjacency.cell_count;
+  if (volume->cell_count == 0) {
+    return tc_error(volume->context, TETCAST_ERROR_DATA, "the mesh has no cell with an inside (%" PRId64 " tetrahedra)",
+                    volume->mesh_cell_count);
+  }
+  if (volume->cell_count < volume->mesh_cell_count) {
+    tc_warning(volume->context, "%" PRId64 " tetrahedra left out: %" PRId64 " with a vertex twice, %" PRId64
+               " duplicates of others", volume->mesh_cell_count - volume->cell_count, volume->adjacency.collapsed,
+               volume->adjacency.duplicates);
+  }
+  if (volume->adjacency.nonmanifold > 0 && shell_only(volume)) {
+    tc_warning(volume->context, "%" PRId64 " faces have three cells or more, which overlap then: the traversal of faces is right, the shell's may not be",
+               volume->adjacency.nonmanifold);
+  }
+  describe(volume, mesh);
+  if (!shell_only(volume)) tc_adjacency_drop_links(&volume->adjacency);
+  volume->shell = (TcShell){.volume = volume, .faces = volume->adjacency.shell, .count = volume->info.shell_faces};
+  return tc_embree_create(volume->context, volume->shell.count, volume->center, volume->radius, tc_shell_bounds, &volume->shell,
+                          &volume->shell.embree);
+}
+
+TetcastStatus tc_volume_create(TetcastContext *context, const TetcastMesh *mesh, const TetcastVolumeDesc *desc,
+                               TetcastVolume **out) {
+  if (mesh->tetrahedra.count == 0) return tc_error(context, TETCAST_ERROR_DATA, "the mesh has no tetrahedra");
+  TetcastVolume *volume;
+  if (!tc_allocate_array(context, (void **)&volume, 1, sizeof *volume, "volume")) return TETCAST_ERROR_MEMORY;
+  memset(volume, 0, sizeof *volume);
+  volume->context = context;
+  volume->traversal = desc->traversal;
+  volume->vertex_count = mesh->vertices.count;
+  volume->mesh_cell_count = mesh->tetrahedra.count;
+  TetcastStatus status = tc_rows_cache_create(context, &volume->rows);
+  if (!status) status = build(volume, mesh, desc);
+  if (status) {
+    tc_volume_destroy(volume);
+    return status;
+  }
+  *out = volume;
+  return TETCAST_OK;
+}
+
+void tc_volume_destroy(TetcastVolume *volume) {
+  if (!volume) return;
+  TetcastContext *context = volume->context;
+  tc_embree_destroy(volume->shell.embree);
+  tc_clusters_clear(&volume->clusters);
+  if (volume->adjacency.context) tc_adjacency_clear(&volume->adjacency);
+  tc_release(context, volume->positions);
+  tc_release(context, volume->vertex_source);
+  tc_release(context, volume->corner_order);
+  tc_rows_cache_destroy(volume->rows);
+  tc_release(context, volume);
+}
+
+void tc_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info) {
+  *info = volume->info;
+  const size_t position = 3 * (volume->positions_are_double ? sizeof(double) : sizeof(float));
+  const TcAdjacency *adjacency = &volume->adjacency;
+  const size_t cells = (size_t)volume->cell_count, shell = (size_t)adjacency->shell_count;
+  info->bytes = sizeof *volume + (size_t)volume->vertex_count * (position + sizeof *volume->vertex_source) + tc_embree_bytes(volume->shell.embree) + tc_clusters_bytes(&volume->clusters) +
+                (adjacency->cells ? cells * sizeof *adjacency->cells : 0) +
+                (adjacency->shell ? shell * sizeof *adjacency->shell : 0) +
+                (adjacency->vertices ? cells * sizeof *adjacency->vertices : 0) +
+                (adjacency->source ? cells * sizeof *adjacency->source : 0) + (volume->corner_order ? cells : 0) +
+                tc_rows_cache_bytes(volume->rows);
+}

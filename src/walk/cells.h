@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Volumes whose cells Embree holds one by one (TETCAST_TRAVERSAL_FACES): each that a ray crosses is found for itself, whatever its neighbours are. One lane. */
+#ifndef TC_WALK_CELLS_H
+#define TC_WALK_CELLS_H
+
+#include "walk/packet.h"
+
+/* The two faces through which a ray enters and leaves a cell. */
+typedef struct TcCellFaces {
+  TcLanePoints v[2][3];
+  TcVec weight[2][3];
+  TcCrossing at[2];
+} TcCellFaces;
+
+/* False: the ray passes the cell. It crosses none or exactly two of its faces. */
+static bool tc_cell_faces(const unsigned on, const TcGround *ground, const TcRays *rays, uint32_t cell, TcCellFaces *faces) {
+  const uint32_t *vertex = ground->shell->volume->adjacency.vertices[cell];
+  TcLanePoints p[4];
+  for (int k = 0; k < 4; ++k) tc_points_of_one(ground, rays, vertex[k], &p[k]);
+  int count = 0;
+  for (int k = 0; k < 4 && count < 2; ++k) {
+    const TcLanePoints *v[3] = {&p[k], &p[(k + 1) & 3], &p[(k + 2) & 3]};
+    TcVec e[3];
+    tc_edges(tc_all(), (const TcLanePoints *const[]){v[1], v[2], v[0]}, (const TcLanePoints *const[]){v[2], v[0], v[1]}, e);
+    const unsigned negative = tc_bits(tc_negative(e[0])) + tc_bits(tc_negative(e[1])) + tc_bits(tc_negative(e[2]));
+    if (negative != 0 && negative != 3) continue;
+    for (int j = 0; j < 3; ++j) {
+      faces->v[count][j] = *v[j];
+      faces->weight[count][j] = tc_abs(e[j]);
+    }
+    tc_cross_face(on, ground, rays, faces->v[count], faces->weight[count], &faces->at[count]);
+    ++count;
+  }
+  if (count == 2 && TC_AT(faces->at[1].z, 0) < TC_AT(faces->at[0].z, 0)) {
+    const TcCellFaces other = *faces;
+    for (int i = 0; i < 2; ++i) {
+      memcpy(faces->v[i], other.v[1 - i], sizeof faces->v[i]);
+      memcpy(faces->weight[i], other.weight[1 - i], sizeof faces->weight[i]);
+      faces->at[i] = other.at[1 - i];
+    }
+  }
+  return count == 2;
+}
+
+/* The ray is at the face where it enters (0) or leaves (1). */
+static void tc_cell_at(const unsigned on, const TcGround *ground, TcPacket *p, const TcCellFaces *faces, int i) {
+  memcpy(p->v, faces->v[i], sizeof p->v);
+  memcpy(p->weight, faces->weight[i], sizeof p->weight);
+  p->at = faces->at[i];
+  if (on & TC_BOUND) p->shift += tc_packet_shift(ground, p);
+}
+
+/* The scalar at the corners of a face, with TC_CORNERS. */
+static TcVec tc_cell_corner_value(const TcGround *ground, uint32_t cell, const TcPacket *p) {
+  const uint32_t *vertex = ground->shell->volume->adjacency.vertices[cell];
+  TcVec value[3];
+  for (int k = 0; k < 3; ++k) {
+    int rank = 0;
+    while (vertex[rank] != TC_AT(p->v[k].id, 0)) ++rank;
+    value[k] = tc_set((TcReal)tc_rows_value(ground->values, cell, rank));
+  }
+  return tc_weighted(p->at.barycentric, value[0], value[1], value[2]);
+}
+
+static TcVec tc_cell_range(const TcGround *ground, uint32_t cell) {
+  double low = INFINITY, high = -INFINITY;
+  for (int k = 0; k < 4; ++k) {
+    low = fmin(low, tc_rows_value(ground->values, cell, k));
+    high = fmax(high, tc_rows_value(ground->values, cell, k));
+  }
+  return tc_set((TcReal)(high - low));
+}
+
+static void tc_cell_candidate(void *user, uint32_t i, unsigned lanes) {
+  const TcGround *ground = ((const TcQueue *)user)->ground;
+  for (; lanes; lanes &= lanes - 1) {
+    const TcWaiting *waiting = &((const TcQueue *)user)->waiting[__builtin_ctz(lanes)];
+    TcCellFaces faces;
+    if (!tc_cell_faces(TC_CELLS, ground, &waiting->rays, i, &faces)) continue;
+    TcHit *hit = tc_hits_append(waiting->hits);
+    if (hit) *hit = (TcHit){.begin = (double)TC_AT(faces.at[0].z, 0), .end = (double)TC_AT(faces.at[1].z, 0), .id = i};
+  }
+}
+
+#endif

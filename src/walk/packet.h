@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The walk: from a face of the shell through cell after cell to the face of the shell where the ray leaves (shell.h), for a packet of rays. The cells a
+ * ray meets form paths; each face joins at most two cells, so a path that starts at the shell can't return to a cell and ends at the shell: the
+ * walk terminates on any adjacency, and every path is found from either end.
+ *
+ * A step is a chain (which cell, which vertex, where it lies, on which side of three edges, which neighbour) that waits for memory and for itself;
+ * several packets take its parts by turns. */
+#ifndef TC_WALK_PACKET_H
+#define TC_WALK_PACKET_H
+
+#include "volume/shell.h"
+#include "walk/hits.h"
+#include "walk/points.h"
+
+typedef struct TcPacket {
+  TcRays rays;
+  /* The face where each ray is: its vertices, counter-clockwise around the ray, each with the cross product of the two others, > 0. */
+  TcLanePoints v[3];
+  TcVec weight[3];
+  TcCrossing at;
+  TcVec shift;     /* with TC_BOUND: how far off the depths may be, in all, at which what is seen jumps */
+  TcVec seen;           /* the depth up to which a path has been seen */
+  TcMask active;        /* lanes that are walking */
+
+  /* Of each lane, in memory for scalar instructions: */
+  _Alignas(64) uint32_t cell[TC_LANES]; /* the cell ahead; the one after the last, from which nothing leads on, where none is */
+  uint32_t face[TC_LANES];              /* XOR of the face's vertices */
+  uint32_t vertex[TC_LANES];            /* the cell's vertex that is not in the face */
+  uint32_t from[TC_LANES];              /* the cell that was crossed last */
+  uint32_t exit_cell[TC_LANES], exit_face[TC_LANES]; /* where a path ended */
+
+  /* Paths: bits of lanes. */
+  unsigned lanes;    /* those of rays */
+  unsigned waiting;  /* at the end of a path, until the packet is looked at */
+  unsigned starting; /* those that set out anew */
+  unsigned stopped;  /* complete before all was seen */
+  unsigned lost;     /* found no way out of a cell, which exact signs exclude */
+  unsigned again;    /* with more hits left than the one where they leave, perhaps */
+  int64_t steps, next[TC_LANES];
+  TcHits *hits; /* [TC_LANES] */
+  int64_t destination[TC_LANES];
+} TcPacket;
+
+/* The lanes of `mask` rest. */
+TC_INLINE void tc_packet_rest(const TcGround *ground, TcPacket *p, TcMask mask) {
+  const TcWord end = tc_set_word((uint32_t)ground->shell->volume->cell_count), none = {0};
+  tc_store_word(p->cell, tc_select_word(mask, end, tc_load_word(p->cell)));
+  tc_store_word(p->face, tc_select_word(mask, none, tc_load_word(p->face)));
+  TC_IN_MEMORY(p->cell);
+  TC_IN_MEMORY(p->face);
+}
+
+/* Which vertex comes next, whose numbers are fetched while other things are done. */
+TC_INLINE void tc_packet_expect(const TcGround *ground, TcPacket *p) {
+  const uint32_t *cells = (const uint32_t *)(const void *)ground->shell->volume->adjacency.cells;
+  TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) {
+    const uint32_t next = cells[5 * (size_t)p->cell[l]] ^ p->face[l];
+    p->vertex[l] = next;
+    if (TC_SINGLE || ground->screen) __builtin_prefetch((const TcReal *)ground->screen->vertices + 4 * (size_t)next);
+  }
+  TC_IN_MEMORY(p->vertex);
+}
+
+/* How far off the depths at which rays cross their faces may be. */
+TC_INLINE TcVec tc_packet_shift(const TcGround *ground, const TcPacket *p) {
+  const TcVec beside = tc_madd(tc_set((TcReal)ground->resolution.relative), p->at.reach, tc_set((TcReal)ground->resolution.beside));
+  return tc_madd(beside, p->at.tilt.z, tc_set((TcReal)ground->resolution.depth));
+}
+
+/* The lanes of `starting` set out from the shell's faces that their hits name. */
+TC_NOINLINE void tc_packet_set_out(const unsigned on, const TcGround *ground, TcPacket *p) {
+  uint32_t id[3][TC_LANES] = {{0}};
+  for (unsigned lanes = p->starting; lanes; lanes &= lanes - 1) {
+    const int l = __builtin_ctz(lanes);
+    const TcShellFace *face = &ground->shell->faces[p->hits[l].data[p->next[l] - 1].id];
+    for (int k = 0; k < 3; ++k) id[k][l] = face->vertex[k];
+    p->cell[l] = face->cell;
+    p->face[l] = face->vertex[0] ^ face->vertex[1] ^ face->vertex[2];
+  }
+  TcLanePoints v[3];
+  for (int k = 0; k < 3; ++k) tc_points_load(ground, &p->rays, id[k], &v[k]);
+  TcVec e[3];
+  const TcMask mask = tc_mask_of(p->starting);
+  tc_edges(mask, (const TcLanePoints *const[]){&v[1], &v[2], &v[0]}, (const TcLanePoints *const[]){&v[2], &v[0], &v[1]}, e);
+  const TcMask turn = tc_negative(e[0]); /* clockwise: v[1] and v[2] change places */
+  p->v[0] = tc_select_points(mask, v[0], p->v[0]);
+  p->v[1] = tc_select_points(mask, tc_select_points(turn, v[2], v[1]), p->v[1]);
+  p->v[2] = tc_select_points(mask, tc_select_points(turn, v[1], v[2]), p->v[2]);
+  const TcVec weight[3] = {tc_abs(e[0]), tc_abs(tc_select(turn, e[2], e[1])), tc_abs(tc_select(turn, e[1], e[2]))};
+  for (int k = 0; k < 3; ++k) p->weight[k] = tc_select(mask, weight[k], p->weight[k]);
+  tc_cross_face(on, ground, &p->rays, p->v, p->weight, &p->at);
+  p->seen = tc_select(mask, tc_max(p->at.z, p->rays.begin), p->seen);
+  if (on & TC_BOUND) p->shift += tc_select(mask, tc_packet_shift(ground, p), tc_set(0));
+  p->active = tc_or(p->active, mask);
+  p->starting = p->again = 0;
+  for (unsigned lanes = tc_bits(p->active) | p->waiting; lanes; lanes &= lanes - 1) {
+    const int l = __builtin_ctz(lanes);
+    if (p->hits[l].count - p->next[l] > 1) p->again |= 1U << l;
+  }
+}
+
+/* With TC_CORNERS: the scalars of the cells that are crossed, at their four corners, those of the face's vertices first, then that of q. */
+TC_NOINLINE void tc_packet_corners(const TcGround *ground, const TcPacket *p, const TcWord *q, TcVec corner[4]) {
+  const TcWord id[4] = {p->v[0].id, p->v[1].id, p->v[2].id, *q};
+  for (int k = 0; k < 4; ++k) {
+    const TcWord rank = tc_rank(id[k], id[(k + 1) & 3], id[(k + 2) & 3], id[(k + 3) & 3], id[k]);
+    for (int l = 0; l < TC_LANES; ++l) TC_AT(corner[k], l) = (TcReal)tc_rows_value(ground->values, p->cell[l], (int)TC_AT(rank, l));
+  }
+}
+
+/* A scalar from barycentric weights, kept within those of the vertices. */
+TC_INLINE TcVec tc_weighted(const TcVec b[3], TcVec s0, TcVec s1, TcVec s2) {
+  const TcVec value = tc_madd(b[0], s0, tc_madd(b[1], s1, b[2] * s2));
+  return tc_max(tc_least3(s0, s1, s2), tc_min(tc_most3(s0, s1, s2), value));
+}
+
+/* What lanes have crossed in a step: from where to where, in their cells. */
+typedef struct TcCrossed {
+  TcMask mask;
+  TcVec z, s0, s1;
+  TcTilt tilt; /* of the face where they entered */
+  TcVec range; /* with TC_CORNERS: of the scalar */
+} TcCrossed;
+
+/* A step's first part: where the vertices of p->vertex lie. */
+TC_INLINE void tc_packet_look(const TcGround *ground, TcPacket *p, TcLanePoints *q) { tc_points_load(ground, &p->rays, p->vertex, q); }
+
+/* A step's second part: crosses the cells. Of the edges from the face's vertices to q the signs name the face through which the ray leaves: that without
+ * v[k], where it passes q between the other two. Returns the lanes that found no way out; *reached: the highest bit is set where a lane is at the shell. */
+TC_INLINE TcMask tc_packet_cross(const unsigned on, const TcGround *ground, TcPacket *p, const TcLanePoints *vertex, TcCrossed *crossed,
+                                 uint32_t *reached) {
+  const uint32_t *cells = (const uint32_t *)(const void *)ground->shell->volume->adjacency.cells;
+  TcLanePoints *v = p->v;
+  const TcLanePoints q = *vertex;
+  TcVec e[3];
+  tc_edges(p->active, (const TcLanePoints *const[]){&v[0], &v[1], &v[2]}, (const TcLanePoints *const[]){&q, &q, &q}, e);
+  crossed->mask = p->active;
+  crossed->z = p->at.z;
+  crossed->s0 = p->at.s;
+  crossed->tilt = p->at.tilt;
+  TcVec corner[4];
+  if (on & TC_CORNERS) {
+    tc_packet_corners(ground, p, &q.id, corner);
+    crossed->s0 = tc_weighted(p->at.barycentric, corner[0], corner[1], corner[2]);
+    crossed->range = tc_max(tc_most3(corner[0], corner[1], corner[2]), corner[3]) - tc_min(tc_least3(corner[0], corner[1], corner[2]), corner[3]);
+  }
+  TcMask negative[3], out[3];
+  for (int k = 0; k < 3; ++k) negative[k] = tc_and(p->active, tc_negative(e[k]));
+  for (int k = 0; k < 3; ++k) out[k] = tc_and_not(negative[(k + 1) % 3], negative[(k + 2) % 3]);
+  const TcWord left = tc_select_word(out[0], v[0].id, tc_select_word(out[1], v[1].id, v[2].id));
+  const TcWord rank = tc_rank(left, q.id, v[0].id, v[1].id, v[2].id); /* that of the neighbour */
+  uint32_t ranks[TC_LANES], any = 0;
+  tc_store_word(ranks, rank);
+  tc_store_word(p->from, tc_load_word(p->cell));
+  TC_IN_MEMORY(ranks);
+  TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) {
+    const uint32_t next = cells[5 * (size_t)p->cell[l] + 1 + ranks[l]];
+    p->cell[l] = next;
+    any |= next;
+  }
+  *reached = any;
+  for (int k = 0; k < 3; ++k) {
+    const TcVec from_next = tc_abs(e[(k + 1) % 3]), from_last = tc_abs(e[(k + 2) % 3]);
+    p->weight[k] = tc_select3(out[(k + 1) % 3], from_last, out[(k + 2) % 3], from_next, p->weight[k]);
+  }
+  for (int k = 0; k < 3; ++k) v[k] = tc_select_points(out[k], q, v[k]);
+  tc_store_word(p->face, v[0].id ^ v[1].id ^ v[2].id);
+  TC_IN_MEMORY(p->face);
+  tc_cross_face(on, ground, &p->rays, v, p->weight, &p->at);
+  crossed->s1 = p->at.s;
+  if (on & TC_CORNERS) {
+    for (int k = 0; k < 3; ++k) corner[k] = tc_select(out[k], corner[3], corner[k]);
+    crossed->s1 = tc_weighted(p->at.barycentric, corner[0], corner[1], corner[2]);
+  }
+  return tc_and_not(p->active, tc_or(tc_or(out[0], out[1]), out[2]));
+}
+
+/* The lanes whose cells can't be seen. */
+TC_NOINLINE unsigned tc_packet_invisible(const TcShell *shell, const TcPacket *p) {
+  unsigned result = 0;
+  for (unsigned lanes = tc_bits(p->active); lanes; lanes &= lanes - 1) {
+    const int l = __builtin_ctz(lanes);
+    if (p->cell[l] & TC_SHELL || !shell->visible[p->cell[l] >> TC_CLUSTER_BITS]) result |= 1U << l;
+  }
+  return result;
+}
+
+/* A step's third part: the lanes that are at the shell rest, and are those that wait. Where others go on to. */
+TC_INLINE unsigned tc_packet_reach(const unsigned on, const TcGround *ground, TcPacket *p, uint32_t reached) {
+  unsigned ended = 0;
+  if (TC_UNLIKELY(ground->shell->visible != NULL)) ended = tc_packet_invisible(ground->shell, p);
+  else if (TC_UNLIKELY(reached & TC_SHELL)) ended = tc_bits(tc_and(p->active, tc_high_bit(tc_load_word(p->cell))));
+  if (TC_UNLIKELY(ended)) {
+    for (unsigned lanes = ended; lanes; lanes &= lanes - 1) {
+      const int l = __builtin_ctz(lanes);
+      p->exit_cell[l] = p->from[l];
+      p->exit_face[l] = p->face[l];
+    }
+    if (on & TC_BOUND) p->shift += tc_select(tc_mask_of(ended), tc_packet_shift(ground, p), tc_set(0));
+    tc_packet_rest(ground, p, tc_mask_of(ended));
+  }
+  tc_packet_expect(ground, p);
+  return ended;
+}
+
+/* ── paths ── */
+
+/* Whether there is another hit from which to set out. */
+static bool tc_packet_next_start(TcPacket *p, int lane) {
+  const TcHits *hits = &p->hits[lane];
+  int64_t next = p->next[lane];
+  while (next < hits->count && hits->data[next].done) ++next;
+  p->next[lane] = next + 1;
+  return next < hits->count;
+}
+
+/* Lanes that wait may set out anew: each path is walked once, from the end that comes first. */
+TC_NOINLINE void tc_packet_arrive(const TcShell *shell, TcPacket *p) {
+  for (; p->waiting; p->waiting &= p->waiting - 1) {
+    const int l = __builtin_ctz(p->waiting);
+    const TcHits *hits = &p->hits[l];
+    for (int64_t j = p->next[l]; j < hits->count; ++j) {
+      const TcShellFace *face = &shell->faces[hits->data[j].id];
+      /* Of one cell's faces each has another XOR. */
+      const bool here = face->cell == p->exit_cell[l] && (face->vertex[0] ^ face->vertex[1] ^ face->vertex[2]) == p->exit_face[l];
+      if (here) hits->data[j].done = true;
+    }
+    if (tc_packet_next_start(p, l)) p->starting |= 1U << l;
+  }
+}
+
+TC_INLINE bool tc_packet_runs(const TcPacket *p) { return p->starting || p->waiting || tc_any(p->active); }
+
+#endif
