@@ -51,6 +51,8 @@ typedef uint32_t TcWord __attribute__((vector_size(TC_LANES * sizeof(uint32_t)))
 #define TC_AT(vector, lane) ((vector)[lane])
 #endif
 
+#define TC_EACH_LANE for (int l = 0; l < TC_LANES; ++l)
+
 enum { TC_ALL_LANES = (1 << TC_LANES) - 1 };
 
 /* Four numbers next to each other in memory: a vertex, a quarter of a row. */

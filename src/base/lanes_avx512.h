@@ -22,9 +22,9 @@ TC_INLINE TcMask tc_le(TcVec a, TcVec b) { return _mm512_cmp_ps_mask(TC_R(a), TC
 TC_INLINE TcMask tc_eq(TcVec a, TcVec b) { return _mm512_cmp_ps_mask(TC_R(a), TC_R(b), _CMP_EQ_OQ); }
 TC_INLINE TcMask tc_eq_int(TcInt a, TcInt b) { return _mm512_cmpeq_epi32_mask((__m512i)a, (__m512i)b); }
 TC_INLINE TcMask tc_negative(TcVec a) { return _mm512_movepi32_mask((__m512i)a); }
-TC_INLINE TcMask tc_and(TcMask a, TcMask b) { return _kand_mask16(a, b); }
-TC_INLINE TcMask tc_or(TcMask a, TcMask b) { return _kor_mask16(a, b); }
-TC_INLINE TcMask tc_and_not(TcMask a, TcMask b) { return _kandn_mask16(b, a); }
+TC_INLINE TcMask tc_and(TcMask a, TcMask b) { return (TcMask)(a & b); }
+TC_INLINE TcMask tc_or(TcMask a, TcMask b) { return (TcMask)(a | b); }
+TC_INLINE TcMask tc_and_not(TcMask a, TcMask b) { return (TcMask)(a & ~b); }
 TC_INLINE TcWord tc_select_word(TcMask m, TcWord a, TcWord b) { return (TcWord)_mm512_mask_blend_epi32(m, (__m512i)b, (__m512i)a); }
 TC_INLINE TcVec tc_madd(TcVec a, TcVec b, TcVec c) { return (TcVec)_mm512_fmadd_ps(TC_R(a), TC_R(b), TC_R(c)); }
 TC_INLINE TcVec tc_msub(TcVec a, TcVec b, TcVec c) { return (TcVec)_mm512_fmsub_ps(TC_R(a), TC_R(b), TC_R(c)); }
@@ -34,9 +34,9 @@ TC_INLINE TcMask tc_le(TcVec a, TcVec b) { return _mm512_cmp_pd_mask(TC_R(a), TC
 TC_INLINE TcMask tc_eq(TcVec a, TcVec b) { return _mm512_cmp_pd_mask(TC_R(a), TC_R(b), _CMP_EQ_OQ); }
 TC_INLINE TcMask tc_eq_int(TcInt a, TcInt b) { return _mm512_cmpeq_epi64_mask((__m512i)a, (__m512i)b); }
 TC_INLINE TcMask tc_negative(TcVec a) { return _mm512_movepi64_mask((__m512i)a); }
-TC_INLINE TcMask tc_and(TcMask a, TcMask b) { return _kand_mask8(a, b); }
-TC_INLINE TcMask tc_or(TcMask a, TcMask b) { return _kor_mask8(a, b); }
-TC_INLINE TcMask tc_and_not(TcMask a, TcMask b) { return _kandn_mask8(b, a); }
+TC_INLINE TcMask tc_and(TcMask a, TcMask b) { return (TcMask)(a & b); }
+TC_INLINE TcMask tc_or(TcMask a, TcMask b) { return (TcMask)(a | b); }
+TC_INLINE TcMask tc_and_not(TcMask a, TcMask b) { return (TcMask)(a & ~b); }
 TC_INLINE TcWord tc_select_word(TcMask m, TcWord a, TcWord b) { return (TcWord)_mm256_mask_blend_epi32(m, (__m256i)b, (__m256i)a); }
 TC_INLINE TcVec tc_madd(TcVec a, TcVec b, TcVec c) { return (TcVec)_mm512_fmadd_pd(TC_R(a), TC_R(b), TC_R(c)); }
 TC_INLINE TcVec tc_msub(TcVec a, TcVec b, TcVec c) { return (TcVec)_mm512_fmsub_pd(TC_R(a), TC_R(b), TC_R(c)); }

@@ -101,6 +101,7 @@ TC_NOINLINE void tc_emission_parts(const unsigned on, const TcGatherJob *job, Tc
   TcLanePieces *piece = &e->piece;
   const TcVec zero = tc_set(0), length = *whole_length, s0 = *begin, s1 = *end, whole = tc_abs(s1 - s0);
   const TcMask up = tc_le(s0, s1), flat = tc_eq(whole, zero);
+  const TcVec ratio = 1 / whole;
   TcVec done = s0;
   const TcMask rising = tc_and(up, tc_and(tc_le(piece->low, done), tc_lt(done, piece->high)));
   const TcMask falling = tc_and_not(tc_and(tc_lt(piece->low, done), tc_le(done, piece->high)), up);
@@ -109,7 +110,7 @@ TC_NOINLINE void tc_emission_parts(const unsigned on, const TcGatherJob *job, Tc
   for (;;) {
     const TcMask crossing = tc_and(mask, tc_or(tc_and(up, tc_lt(piece->high, s1)), tc_and_not(tc_lt(s1, piece->low), up)));
     const TcVec to = tc_select(crossing, tc_select(up, piece->high, piece->low), s1);
-    const TcVec fraction = tc_select(flat, tc_set(1), tc_abs(to - done) / whole), part = length * fraction;
+    const TcVec fraction = tc_select(flat, tc_set(1), tc_abs(to - done) * ratio), part = length * fraction;
     if (on & TC_BOUND) tc_emission_move(e, mask, part, done, to, *spread * fraction);
     if (tc_any(tc_and(mask, piece->filled))) {
       if (++e->parts == 64) tc_emission_end_block(on, e);
@@ -186,17 +187,23 @@ TC_INLINE TcMask tc_emission_complete(const unsigned on, const TcGatherJob *job,
 #endif
 }
 
-/* Red, green, blue, alpha, and a bound on their error. */
+/* Red, green, blue, alpha, and a bound on their error, with TC_BOUND. */
 TC_INLINE void tc_emission_end(const unsigned on, const TcGatherJob *job, TcEmission *e, const TcEnding *ending, double (*sums)[TC_LANES]) {
   tc_emission_end_block(on, e);
-  for (int l = 0; l < TC_LANES; ++l) {
-    const double alpha = -expm1(-e->depth[l]);
-    const bool stopped = ending->stopped >> l & 1;
-    for (int k = 0; k < 3; ++k) sums[k][l] = on & TC_COLORED ? e->color[k][l] : alpha * job->pieces->largest[k];
-    sums[3][l] = alpha;
-    double moved = 0;
-    if (on & TC_BOUND) moved = (double)TC_AT(e->moved, l) * (TC_SINGLE ? job->tolerance.per_spread : 1) + job->tolerance.per_shift * ending->shift[l];
-    sums[4][l] = tc_tolerance_bound(&job->tolerance, e->depth[l], stopped, alpha, ending->steps, moved);
+#if TC_SINGLE
+  TC_EACH_LANE sums[3][l] = -expm1(-e->depth[l]);
+#else
+  tc_store(sums[3], tc_segments_opacity(e->before));
+#endif
+  for (int k = 0; k < 3; ++k) {
+    if (on & TC_COLORED) memcpy(sums[k], e->color[k], sizeof e->color[k]);
+    else TC_EACH_LANE sums[k][l] = sums[3][l] * job->pieces->largest[k];
+  }
+  TC_EACH_LANE {
+    sums[4][l] = NAN;
+    if (!(on & TC_BOUND)) continue;
+    const double moved = (double)TC_AT(e->moved, l) * (TC_SINGLE ? job->tolerance.per_spread : 1) + job->tolerance.per_shift * ending->shift[l];
+    sums[4][l] = tc_tolerance_bound(&job->tolerance, e->depth[l], ending->stopped >> l & 1, sums[3][l], ending->steps, moved);
   }
 }
 

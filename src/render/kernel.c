@@ -345,41 +345,49 @@ typedef struct Tile {
 } Tile;
 
 /* Places the rays of samples of pixels, one in each lane. */
-static void place_samples(const TcJob *job, const double x[TC_LANES], const double y[TC_LANES], const int sample[TC_LANES], TcPlaced *placed) {
+static void place_samples(const TcJob *job, const TcGround *ground, const double x[TC_LANES], const double y[TC_LANES], const double sample_x[TC_LANES],
+                          const double sample_y[TC_LANES], TcPlaced *placed) {
   TcLines *lines = &placed->lines;
   const double samples_x = job->samples_x, samples_y = job->samples_y;
-  double u[TC_LANES], v[TC_LANES];
-  for (int l = 0; l < TC_LANES; ++l) {
-    const double column = x[l] * samples_x + sample[l] % job->samples_x + 0.5, row = y[l] * samples_y + sample[l] / job->samples_x + 0.5;
-    u[l] = 2 * column / ((double)job->width * samples_x) - 1;
-    v[l] = 1 - 2 * row / ((double)job->height * samples_y);
+  const double width = (double)job->width * samples_x, height = (double)job->height * samples_y;
+  const double x0 = job->screen ? job->screen->x0 : 0, y0 = job->screen ? job->screen->y0 : 0;
+  double column[TC_LANES], row[TC_LANES], u[TC_LANES], v[TC_LANES];
+  TC_EACH_LANE {
+    column[l] = x[l] * samples_x + sample_x[l] + 0.5;
+    row[l] = y[l] * samples_y + sample_y[l] + 0.5;
+  }
+  const double u1 = 2 / width, v1 = 2 / height;
+  TC_EACH_LANE {
+    u[l] = column[l] * u1 - 1;
+    v[l] = 1 - row[l] * v1;
+    lines->x[l] = column[l] / samples_x - x0;
+    lines->y[l] = row[l] / samples_y - y0;
     lines->begin[l] = 0;
     lines->end[l] = INFINITY;
-    if (job->screen) {
-      lines->x[l] = column / samples_x - job->screen->x0;
-      lines->y[l] = row / samples_y - job->screen->y0;
-    }
   }
   tc_view_lines(&job->view, u, v, lines);
-  tc_place_all(job->shell->volume, placed);
+  tc_place(ground, placed);
 }
 
 /* Places the rays of the next packet of pixels. */
 static void place_next(Tile *tile) {
   const TcJob *job = tile->job;
   TcPlaced *placed = tile->placed;
-  double px[TC_LANES], py[TC_LANES];
-  int sample[TC_LANES];
-  placed->lanes = 0;
-  for (int l = 0; l < TC_LANES; ++l) {
-    const int64_t x = tile->x + l % PACKET_X, y = tile->y + l / PACKET_X;
-    px[l] = (double)x;
-    py[l] = (double)y;
-    sample[l] = tile->sample;
-    placed->destination[l] = DESTINATION((y - tile->y0) * (tile->x1 - tile->x0) + (x - tile->x0), tile->sample);
-    if (x < tile->x1 && y < tile->y1) placed->lanes |= 1U << l;
+  double x[TC_LANES], y[TC_LANES], sample_x[TC_LANES], sample_y[TC_LANES];
+  const double sx = tile->sample % job->samples_x, sy = tile->sample / job->samples_x;
+  const int64_t width = tile->x1 - tile->x0, first = (tile->y - tile->y0) * width + tile->x - tile->x0;
+  const int columns = (int)(tile->x1 - tile->x), rows_left = (int)(tile->y1 - tile->y);
+  unsigned inside = 0;
+  TC_EACH_LANE {
+    x[l] = (double)(tile->x + l % PACKET_X);
+    y[l] = (double)(tile->y + l / PACKET_X);
+    sample_x[l] = sx;
+    sample_y[l] = sy;
+    placed->destination[l] = DESTINATION(first + l / PACKET_X * width + l % PACKET_X, tile->sample);
+    inside |= (unsigned)((l % PACKET_X < columns) & (l / PACKET_X < rows_left)) << l;
   }
-  place_samples(job, px, py, sample, placed);
+  placed->lanes = inside;
+  place_samples(job, &tile->state->ground, x, y, sample_x, sample_y, placed);
   if (++tile->sample < job->samples_x * job->samples_y) return;
   tile->sample = 0;
   tile->y += PACKET_Y; /* so that two packets in turn fill a square, or nearly */
@@ -433,6 +441,7 @@ static bool render_tile(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, in
 
 typedef struct Samples {
   const TcJob *job;
+  const TcGround *ground;
   TcPlaced *placed;
   const TcSample *samples;
   int64_t count, next;
@@ -440,18 +449,18 @@ typedef struct Samples {
 
 static void place_some(Samples *some) {
   TcPlaced *placed = some->placed;
-  double x[TC_LANES], y[TC_LANES];
-  int sample[TC_LANES];
+  double x[TC_LANES], y[TC_LANES], sample_x[TC_LANES], sample_y[TC_LANES];
   placed->lanes = 0;
-  for (int l = 0; l < TC_LANES; ++l) {
+  TC_EACH_LANE {
     const TcSample *s = &some->samples[some->next < some->count ? some->next : 0];
     x[l] = (double)s->x;
     y[l] = (double)s->y;
-    sample[l] = s->sample;
+    sample_x[l] = s->sample % some->job->samples_x;
+    sample_y[l] = s->sample / some->job->samples_x;
     placed->destination[l] = s->pixel;
     if (some->next++ < some->count) placed->lanes |= 1U << l;
   }
-  place_samples(some->job, x, y, sample, placed);
+  place_samples(some->job, some->ground, x, y, sample_x, sample_y, placed);
 }
 
 static bool next_of_samples(void *user, TcQueue *queue) {
@@ -464,7 +473,7 @@ static bool next_of_samples(void *user, TcQueue *queue) {
 
 static bool render_samples(const TcJob *job, const TcSample *samples, int64_t count, TcWorker *worker, double *sums) {
   State *state = prepare(job, worker);
-  Samples some = {.job = job, .placed = &state->placed, .samples = samples, .count = count};
+  Samples some = {.job = job, .ground = &state->ground, .placed = &state->placed, .samples = samples, .count = count};
   const Source source = {next_of_samples, &some, sums};
   return run_packets(job, state, worker, &source);
 }
@@ -472,7 +481,7 @@ static bool render_samples(const TcJob *job, const TcSample *samples, int64_t co
 /* ── any rays ── */
 
 typedef struct Cast {
-  const TcJob *job;
+  const TcGround *ground;
   TcPlaced *placed;
   const TcLine *lines;
   int64_t count, next; /* rays, and the first of those that have not been placed */
@@ -493,7 +502,7 @@ static void place_cast(Cast *cast) {
     placed->destination[l] = cast->next;
     if (cast->next++ < cast->count) placed->lanes |= 1U << l;
   }
-  tc_place_all(cast->job->shell->volume, placed);
+  tc_place(cast->ground, placed);
 }
 
 static bool next_of_cast(void *user, TcQueue *queue) {
@@ -506,7 +515,7 @@ static bool next_of_cast(void *user, TcQueue *queue) {
 
 static bool cast_lines(const TcJob *job, const TcLine *lines, int64_t count, TcWorker *worker, double *sums) {
   State *state = prepare(job, worker);
-  Cast cast = {.job = job, .placed = &state->placed, .lines = lines, .count = count};
+  Cast cast = {.ground = &state->ground, .placed = &state->placed, .lines = lines, .count = count};
   const Source source = {next_of_cast, &cast, sums};
   return run_packets(job, state, worker, &source);
 }

@@ -136,6 +136,7 @@ typedef struct Render {
   const TcIsaKernels *kernels;
   TcScreen screen, precise_screen;
   Working *workers;
+  bool plain; /* pixels of the frame are the sums, and there are no channels */
   int64_t tiles_x, tiles_y;
 } Render;
 
@@ -148,6 +149,13 @@ static bool render_tile(const Render *render, int64_t tile_x, int64_t tile_y, Wo
   memset(working->sums, 0, (size_t)numbers * sizeof *working->sums);
   if (!render->kernels->tile(job, x0, y0, x1, y1, &working->worker, working->sums)) return false;
   for (int64_t i = 0; samples > 1 && i < numbers; ++i) working->sums[i] /= samples;
+  if (render->plain) {
+    for (int64_t y = y0, i = 0; y < y1; ++y) {
+      char *row = (char *)render->frame->pixels + y * render->frame->row_stride + x0 * 4 * (int64_t)sizeof(double);
+      for (int64_t x = 0; x < x1 - x0; ++x, ++i) memcpy(row + 4 * x * (int64_t)sizeof(double), working->sums + 5 * i, 4 * sizeof(double));
+    }
+    return true;
+  }
   TcGathered gathered = {.sums = working->sums, .coefficients = job->coefficients, .exponent = job->shell->volume->exponent};
   for (int64_t y = y0; y < y1; ++y) {
     for (int64_t x = x0; x < x1; ++x, gathered.sums += job->sums) {
@@ -318,6 +326,7 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   job->to_the_end = tc_frame_channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH) || tc_frame_channel(frame, TETCAST_CHANNEL_PATH_LENGTH);
   tc_job_of_scene(scene, measured, job);
   const bool one_by_one = sampler || scene->volume->traversal == TETCAST_TRAVERSAL_FACES;
+  render.plain = !scene->coefficients && frame->type == TETCAST_TYPE_FLOAT64 && !measured;
   render.kernels = tc_kernels_for(one_by_one ? TETCAST_ISA_SCALAR : desc->isa);
   plan(scene, desc, measured, &render); /* which may take those in single precision */
   TetcastRenderStats sum = {.rays = frame->width * frame->height * desc->samples, .isa = render.kernels->name, .precision = render.kernels->precision};

@@ -19,13 +19,13 @@ static bool tc_cell_faces(const unsigned on, const TcGround *ground, const TcRay
   for (int k = 0; k < 4; ++k) tc_points_of_one(ground, rays, vertex[k], &p[k]);
   int count = 0;
   for (int k = 0; k < 4 && count < 2; ++k) {
-    const TcLanePoints *v[3] = {&p[k], &p[(k + 1) & 3], &p[(k + 2) & 3]};
+    const TcLanePoints v[3] = {p[k], p[(k + 1) & 3], p[(k + 2) & 3]};
     TcVec e[3];
-    tc_edges(tc_all(), (const TcLanePoints *const[]){v[1], v[2], v[0]}, (const TcLanePoints *const[]){v[2], v[0], v[1]}, e);
+    tc_edges_of(tc_all(), v, e);
     const unsigned negative = tc_bits(tc_negative(e[0])) + tc_bits(tc_negative(e[1])) + tc_bits(tc_negative(e[2]));
     if (negative != 0 && negative != 3) continue;
     for (int j = 0; j < 3; ++j) {
-      faces->v[count][j] = *v[j];
+      faces->v[count][j] = v[j];
       faces->weight[count][j] = tc_abs(e[j]);
     }
     tc_cross_face(on, ground, rays, faces->v[count], faces->weight[count], &faces->at[count]);

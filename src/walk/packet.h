@@ -81,7 +81,7 @@ TC_NOINLINE void tc_packet_set_out(const unsigned on, const TcGround *ground, Tc
   for (int k = 0; k < 3; ++k) tc_points_load(ground, &p->rays, id[k], &v[k]);
   TcVec e[3];
   const TcMask mask = tc_mask_of(p->starting);
-  tc_edges(mask, (const TcLanePoints *const[]){&v[1], &v[2], &v[0]}, (const TcLanePoints *const[]){&v[2], &v[0], &v[1]}, e);
+  tc_edges_of(mask, v, e);
   const TcMask turn = tc_negative(e[0]); /* clockwise: v[1] and v[2] change places */
   p->v[0] = tc_select_points(mask, v[0], p->v[0]);
   p->v[1] = tc_select_points(mask, tc_select_points(turn, v[2], v[1]), p->v[1]);
@@ -127,20 +127,20 @@ TC_INLINE void tc_packet_look(const TcGround *ground, TcPacket *p, TcLanePoints 
 
 /* A step's second part: crosses the cells. Of the edges from the face's vertices to q the signs name the face through which the ray leaves: that without
  * v[k], where it passes q between the other two. Returns the lanes that found no way out; *reached: the highest bit is set where a lane is at the shell. */
-TC_INLINE TcMask tc_packet_cross(const unsigned on, const TcGround *ground, TcPacket *p, const TcLanePoints *vertex, TcCrossed *crossed,
+TC_INLINE TcMask tc_packet_cross(const unsigned on, const TcGround *ground, TcPacket *p, const TcLanePoints *q, TcCrossed *crossed,
                                  uint32_t *reached) {
   const uint32_t *cells = (const uint32_t *)(const void *)ground->shell->volume->adjacency.cells;
   TcLanePoints *v = p->v;
-  const TcLanePoints q = *vertex;
   TcVec e[3];
-  tc_edges(p->active, (const TcLanePoints *const[]){&v[0], &v[1], &v[2]}, (const TcLanePoints *const[]){&q, &q, &q}, e);
+  tc_edges_to(p->active, v, q, e);
   crossed->mask = p->active;
   crossed->z = p->at.z;
   crossed->s0 = p->at.s;
   crossed->tilt = p->at.tilt;
   TcVec corner[4];
   if (on & TC_CORNERS) {
-    tc_packet_corners(ground, p, &q.id, corner);
+    const TcWord id = q->id;
+    tc_packet_corners(ground, p, &id, corner);
     crossed->s0 = tc_weighted(p->at.barycentric, corner[0], corner[1], corner[2]);
     crossed->range = tc_max(tc_most3(corner[0], corner[1], corner[2]), corner[3]) - tc_min(tc_least3(corner[0], corner[1], corner[2]), corner[3]);
   }
@@ -148,7 +148,7 @@ TC_INLINE TcMask tc_packet_cross(const unsigned on, const TcGround *ground, TcPa
   for (int k = 0; k < 3; ++k) negative[k] = tc_and(p->active, tc_negative(e[k]));
   for (int k = 0; k < 3; ++k) out[k] = tc_and_not(negative[(k + 1) % 3], negative[(k + 2) % 3]);
   const TcWord left = tc_select_word(out[0], v[0].id, tc_select_word(out[1], v[1].id, v[2].id));
-  const TcWord rank = tc_rank(left, q.id, v[0].id, v[1].id, v[2].id); /* that of the neighbour */
+  const TcWord rank = tc_rank(left, q->id, v[0].id, v[1].id, v[2].id); /* that of the neighbour */
   uint32_t ranks[TC_LANES], any = 0;
   tc_store_word(ranks, rank);
   tc_store_word(p->from, tc_load_word(p->cell));
@@ -163,7 +163,7 @@ TC_INLINE TcMask tc_packet_cross(const unsigned on, const TcGround *ground, TcPa
     const TcVec from_next = tc_abs(e[(k + 1) % 3]), from_last = tc_abs(e[(k + 2) % 3]);
     p->weight[k] = tc_select3(out[(k + 1) % 3], from_last, out[(k + 2) % 3], from_next, p->weight[k]);
   }
-  for (int k = 0; k < 3; ++k) v[k] = tc_select_points(out[k], q, v[k]);
+  for (int k = 0; k < 3; ++k) v[k] = tc_select_points(out[k], *q, v[k]);
   tc_store_word(p->face, v[0].id ^ v[1].id ^ v[2].id);
   TC_IN_MEMORY(p->face);
   tc_cross_face(on, ground, &p->rays, v, p->weight, &p->at);

@@ -148,20 +148,30 @@ TC_INLINE TcMask tc_vanishes(const TcVec e[3]) {
   return TC_SINGLE ? tc_lt(least, tc_set(TC_REAL_MIN)) : tc_eq(least, tc_set(0));
 }
 
-/* Three cross products a × b: to a relative error of 2⁻⁵¹ (single precision: 2⁻²²), never zero, with the exact sign for the points given. That edges
- * have relative accuracy matters: they are the weights of depth and value, also on faces that are seen almost edge-on, where all three nearly
+/* Three cross products v[a[k]] × w[b[k]]: to a relative error of 2⁻⁵¹ (single precision: 2⁻²²), never zero, with the exact sign for the points given. That
+ * edges have relative accuracy matters: they are the weights of depth and value, also on faces that are seen almost edge-on, where all three nearly
  * cancel. */
-TC_INLINE void tc_edges(TcMask active, const TcLanePoints *const a[3], const TcLanePoints *const b[3], TcVec e[3]) {
-  for (int k = 0; k < 3; ++k) e[k] = tc_determinant(a[k]->x, a[k]->y, b[k]->x, b[k]->y);
+TC_INLINE void tc_edges(TcMask active, const TcLanePoints v[], const TcLanePoints w[], const int a[3], const int b[3], TcVec e[3]) {
+  for (int k = 0; k < 3; ++k) e[k] = tc_determinant(v[a[k]].x, v[a[k]].y, w[b[k]].x, w[b[k]].y);
   const TcMask zero = tc_and(active, tc_vanishes(e));
   if (TC_LIKELY(!tc_any(zero))) return;
   for (int k = 0; k < 3; ++k) {
-    const TcLanePoints p = *a[k], q = *b[k];
+    const TcLanePoints p = v[a[k]], q = w[b[k]]; /* copies, so that the others need no addresses */
     TcVec edge = e[k];
     const TcMask here = TC_SINGLE ? tc_lt(tc_abs(edge), tc_set(TC_REAL_MIN)) : tc_eq(edge, tc_set(0));
     tc_edges_tie(&p, &q, tc_bits(tc_and(zero, here)), &edge);
     e[k] = edge;
   }
+}
+
+/* Those of a triangle, each opposite its vertex, and from a face's vertices to q. */
+TC_INLINE void tc_edges_of(TcMask active, const TcLanePoints v[3], TcVec e[3]) {
+  static const int next[3] = {1, 2, 0}, last[3] = {2, 0, 1};
+  tc_edges(active, v, v, next, last, e);
+}
+TC_INLINE void tc_edges_to(TcMask active, const TcLanePoints v[3], const TcLanePoints *q, TcVec e[3]) {
+  static const int of_v[3] = {0, 1, 2}, of_q[3] = {0, 0, 0};
+  tc_edges(active, v, q, of_v, of_q, e);
 }
 
 TC_INLINE TcLanePoints tc_select_points(TcMask m, TcLanePoints a, TcLanePoints b) {

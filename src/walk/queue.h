@@ -12,7 +12,7 @@ enum {
   TC_QUEUE = TC_QUEUE_RAYS / TC_LANES    /* packets */
 };
 
-/* What Embree and setting up work on, double precision whatever the lanes are. */
+/* Rays as they are asked for; double precision whatever the lanes are. Loops over lanes become vectors. */
 typedef struct TcLines {
   double eye[3][TC_LANES], offset[3][TC_LANES], direction[3][TC_LANES], begin[TC_LANES], end[TC_LANES];
   double x[TC_LANES], y[TC_LANES]; /* on the screen, in pixels, where there is one */
@@ -33,124 +33,171 @@ typedef struct TcQueue {
   _Alignas(64) double from_center[3][TC_QUEUE_RAYS], direction[3][TC_QUEUE_RAYS];
 } TcQueue;
 
-/* The ray of camera `view` through position (u, v). */
+/* The rays of camera `view` through positions (u, v). */
 static void tc_view_lines(const TcView *view, const double u[TC_LANES], const double v[TC_LANES], TcLines *lines) {
-  for (int l = 0; l < TC_LANES; ++l) {
-    double d[3], length = 1;
-    for (int k = 0; k < 3; ++k) {
+  double inverse[TC_LANES];
+  const double forward = view->orthographic ? 0 : 1; /* what of the shift turns the ray; the rest moves it */
+  for (int k = 0; k < 3; ++k) {
+    TC_EACH_LANE {
       const double shift = u[l] * view->right[k] + v[l] * view->up[k];
       lines->eye[k][l] = view->eye[k];
-      lines->offset[k][l] = view->orthographic ? shift : 0;
-      d[k] = view->orthographic ? view->forward[k] : view->forward[k] + shift;
+      lines->offset[k][l] = (1 - forward) * shift;
+      lines->direction[k][l] = view->forward[k] + forward * shift;
     }
-    if (!view->orthographic) length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    for (int k = 0; k < 3; ++k) lines->direction[k][l] = d[k] / length;
+  }
+  if (view->orthographic) return;
+  TC_EACH_LANE {
+    const double x = lines->direction[0][l], y = lines->direction[1][l], z = lines->direction[2][l];
+    inverse[l] = 1 / sqrt(x * x + y * y + z * z);
+  }
+  for (int k = 0; k < 3; ++k) {
+    TC_EACH_LANE lines->direction[k][l] *= inverse[l];
   }
 }
 
-/* A ray whose origin was moved to where it is nearest to the volume's centre. */
-typedef struct TcPlace {
-  double origin[3], rest[3], from_center[3], near;
-} TcPlace;
+/* Rays whose origins were moved to where they are nearest to the volume's centre. */
+typedef struct TcPlaces {
+  double origin[3][TC_LANES], rest[3][TC_LANES], from_center[3][TC_LANES], near[TC_LANES];
+} TcPlaces;
 
-/* Rays set up, those of `lanes` that may meet the volume; rays of one kz at a time become a packet. */
+/* Rays set up, those of `lanes` that may meet the volume; rays of one main axis at a time become a packet. */
 typedef struct TcPlaced {
   TcLines lines;
-  TcPlace place[TC_LANES];
+  TcPlaces places;
   int64_t destination[TC_LANES];
   unsigned lanes;
 } TcPlaced;
 
 /* eye + offset + along · direction, as origin + rest to twice the precision: whatever `along` was rounded to, the point is on the ray, and
- * vertex − origin is as good as the vertex is. False: the ray passes the volume's sphere, which has a margin that covers the rounding here; written
- * so that NaN passes it. */
-static bool tc_place(const TetcastVolume *volume, const TcLines *lines, int l, TcPlace *place) {
-  double along = 0, distance2 = 0;
-  for (int k = 0; k < 3; ++k) along += (volume->center[k] - lines->eye[k][l] - lines->offset[k][l]) * lines->direction[k][l];
-  for (int k = 0; k < 3; ++k) {
-    const double product = along * lines->direction[k][l], shift = product + lines->offset[k][l], origin = lines->eye[k][l] + shift;
-    const double rest = tc_product_error(along, lines->direction[k][l], product) + tc_sum_error(product, lines->offset[k][l], shift) +
-                        tc_sum_error(lines->eye[k][l], shift, origin);
-    place->rest[k] = rest;
-    place->origin[k] = tc_without_tiny(origin);
-    place->from_center[k] = place->origin[k] - volume->center[k] + rest;
-    distance2 += place->from_center[k] * place->from_center[k];
-  }
-  place->near = -along;
-  return distance2 <= volume->radius * volume->radius && lines->begin[l] - along <= volume->radius && lines->end[l] - along >= -volume->radius;
-}
-
-static void tc_place_all(const TetcastVolume *volume, TcPlaced *placed) {
-  for (unsigned lanes = placed->lanes; lanes; lanes &= lanes - 1) {
-    const int l = __builtin_ctz(lanes);
-    if (!tc_place(volume, &placed->lines, l, &placed->place[l])) placed->lanes &= ~(1U << l);
-  }
-}
-
-/* A lane's ray in its packet's order of axes; on the screen it is where its pixel is. */
-static void tc_take_ray(const TcGround *ground, const TcPlaced *placed, int l, TcRays *rays) {
+ * vertex − origin is as good as the vertex is. On the screen only Embree needs the point. Rays that pass the volume's sphere, or the part of which that
+ * counts does, are left out; the sphere has a margin that covers the rounding here. Written so that NaN passes it. */
+static void tc_place(const TcGround *ground, TcPlaced *placed) {
+  const TetcastVolume *volume = ground->shell->volume;
   const TcLines *lines = &placed->lines;
-  const TcPlace *place = &placed->place[l];
-  const TcScreen *screen = ground->screen;
-  double shift = place->near; /* of depths against distances from the eye */
-  if (screen) {
-    double cosine = 0; /* of the angle between the ray and the middle of the view */
-    for (int k = 0; k < 3; ++k) cosine += lines->direction[k][l] * screen->forward[k];
-    const double scale = screen->perspective ? screen->distance / cosine : 1;
-    TC_AT(rays->scale, l) = (TcReal)(screen->perspective ? -scale : 1);
-    shift = screen->perspective ? -scale : -screen->distance;
-#if TC_SINGLE
-    TC_AT(rays->x, l) = (TcInteger)nearbyint(lines->x[l] * screen->unit);
-    TC_AT(rays->y, l) = (TcInteger)nearbyint(lines->y[l] * screen->unit);
-#else
-    TC_AT(rays->x, l) = lines->x[l];
-    TC_AT(rays->y, l) = lines->y[l];
-  } else {
-    const int kz = rays->kz, kx = (kz + 1) % 3, ky = (kz + 2) % 3;
-    const double inverse = 1 / lines->direction[kz][l];
-    const double shear_x = tc_without_tiny(lines->direction[kx][l] / lines->direction[kz][l]);
-    const double shear_y = tc_without_tiny(lines->direction[ky][l] / lines->direction[kz][l]);
-    TC_AT(rays->scale, l) = 1;
-    TC_AT(rays->origin[0], l) = place->origin[kx];
-    TC_AT(rays->origin[1], l) = place->origin[ky];
-    TC_AT(rays->origin[2], l) = place->origin[kz];
-    TC_AT(rays->shear_x, l) = shear_x;
-    TC_AT(rays->shear_y, l) = shear_y;
-    TC_AT(rays->inverse_z, l) = inverse;
-    TC_AT(rays->rest_x, l) = tc_without_tiny(place->rest[kx] - shear_x * place->rest[kz]);
-    TC_AT(rays->rest_y, l) = tc_without_tiny(place->rest[ky] - shear_y * place->rest[kz]);
-    TC_AT(rays->rest_z, l) = place->rest[kz] * inverse;
-#endif
+  TcPlaces *places = &placed->places;
+  double along[TC_LANES] = {0}, distance2[TC_LANES] = {0};
+  for (int k = 0; k < 3; ++k) {
+    TC_EACH_LANE {
+      const double offset = (lines->eye[k][l] - volume->center[k]) + lines->offset[k][l];
+      places->from_center[k][l] = offset;
+      along[l] -= offset * lines->direction[k][l];
+    }
   }
-  TC_AT(rays->begin, l) = (TcReal)(lines->begin[l] + shift);
-  TC_AT(rays->end, l) = (TcReal)(lines->end[l] + shift);
+  for (int k = 0; k < 3; ++k) {
+    if (ground->screen) {
+      TC_EACH_LANE places->from_center[k][l] += along[l] * lines->direction[k][l];
+    } else {
+      TC_EACH_LANE {
+        const double product = along[l] * lines->direction[k][l], shift = product + lines->offset[k][l], origin = lines->eye[k][l] + shift;
+        const double rest = tc_product_error(along[l], lines->direction[k][l], product) + tc_sum_error(product, lines->offset[k][l], shift) +
+                            tc_sum_error(lines->eye[k][l], shift, origin);
+        const double kept = origin > -TC_TINY && origin < TC_TINY ? 0 : origin;
+        places->rest[k][l] = rest;
+        places->origin[k][l] = kept;
+        places->from_center[k][l] = kept - volume->center[k] + rest;
+      }
+    }
+    TC_EACH_LANE distance2[l] += places->from_center[k][l] * places->from_center[k][l];
+  }
+  const double radius = volume->radius;
+  unsigned meet = 0;
+  TC_EACH_LANE {
+    places->near[l] = -along[l];
+    const bool meets = (distance2[l] <= radius * radius) & (lines->begin[l] - along[l] <= radius) & (lines->end[l] - along[l] >= -radius);
+    meet |= (unsigned)meets << l;
+  }
+  placed->lanes &= meet;
 }
 
-/* The component in which the ray's direction is largest. */
-static int tc_main_axis(const TcLines *lines, int l) {
-  const double x = fabs(lines->direction[0][l]), y = fabs(lines->direction[1][l]), z = fabs(lines->direction[2][l]);
-  return z > (y > x ? y : x) ? 2 : y > x;
+/* Rays on the screen. */
+static void tc_take_screen(const TcScreen *screen, const TcPlaced *placed, TcWaiting *waiting) {
+  const TcLines *lines = &placed->lines;
+  TcRays *rays = &waiting->rays;
+  double shift[TC_LANES]; /* of depths against distances from the eye */
+  TC_EACH_LANE {
+    const double cosine = lines->direction[0][l] * screen->forward[0] + lines->direction[1][l] * screen->forward[1] +
+                          lines->direction[2][l] * screen->forward[2];
+    shift[l] = screen->perspective ? -screen->distance / cosine : -screen->distance;
+  }
+  TcReal scale[TC_LANES], begin[TC_LANES], end[TC_LANES];
+  TC_EACH_LANE scale[l] = (TcReal)(screen->perspective ? shift[l] : 1);
+  TC_EACH_LANE begin[l] = (TcReal)(lines->begin[l] + shift[l]);
+  TC_EACH_LANE end[l] = (TcReal)(lines->end[l] + shift[l]);
+  rays->scale = tc_load(scale);
+  rays->begin = tc_load(begin);
+  rays->end = tc_load(end);
+#if TC_SINGLE
+  int32_t x[TC_LANES], y[TC_LANES];
+  TC_EACH_LANE x[l] = (int32_t)rint(lines->x[l] * screen->unit);
+  TC_EACH_LANE y[l] = (int32_t)rint(lines->y[l] * screen->unit);
+  memcpy(&rays->x, x, sizeof x);
+  memcpy(&rays->y, y, sizeof y);
+#else
+  rays->x = tc_load(lines->x);
+  rays->y = tc_load(lines->y);
+#endif
 }
+
+#if !TC_SINGLE
+/* Rays in ray space, all of them along kz. */
+static void tc_take_ray_space(const TcPlaced *placed, int kz, TcRays *rays) {
+  const TcLines *lines = &placed->lines;
+  const TcPlaces *places = &placed->places;
+  const int kx = (kz + 1) % 3, ky = (kz + 2) % 3;
+  const TcVec tiny = tc_set(TC_TINY), zero = tc_set(0), dz = tc_load(lines->direction[kz]), rest = tc_load(places->rest[kz]);
+  const TcVec near = tc_load(places->near);
+#define TC_NOT_TINY(x) tc_select(tc_lt(tc_abs(x), tiny), zero, x)
+  rays->kz = kz;
+  rays->scale = tc_set(1);
+  rays->origin[0] = tc_load(places->origin[kx]);
+  rays->origin[1] = tc_load(places->origin[ky]);
+  rays->origin[2] = tc_load(places->origin[kz]);
+  rays->shear_x = TC_NOT_TINY(tc_load(lines->direction[kx]) / dz);
+  rays->shear_y = TC_NOT_TINY(tc_load(lines->direction[ky]) / dz);
+  rays->inverse_z = 1 / dz;
+  rays->rest_x = TC_NOT_TINY(tc_load(places->rest[kx]) - rays->shear_x * rest);
+  rays->rest_y = TC_NOT_TINY(tc_load(places->rest[ky]) - rays->shear_y * rest);
+  rays->rest_z = rest * rays->inverse_z;
+  rays->begin = tc_load(lines->begin) + near;
+  rays->end = tc_load(lines->end) + near;
+#undef TC_NOT_TINY
+}
+
+/* The lanes of `lanes` whose directions are largest in the same component as that of the first of them. */
+static unsigned tc_along_one_axis(const TcLines *lines, unsigned lanes, int *kz) {
+  unsigned result = 0;
+  for (unsigned left = lanes; left; left &= left - 1) {
+    const int l = __builtin_ctz(left);
+    const double x = fabs(lines->direction[0][l]), y = fabs(lines->direction[1][l]), z = fabs(lines->direction[2][l]);
+    const int axis = z > (y > x ? y : x) ? 2 : y > x;
+    if (!result) *kz = axis;
+    if (axis == *kz) result |= 1U << l;
+  }
+  return result;
+}
+#endif
 
 /* Rays of those placed, of one main axis where that matters, are the next that wait. */
 static void tc_enqueue(TcPlaced *placed, TcQueue *queue) {
   const int first = queue->count * TC_LANES;
   TcWaiting *waiting = &queue->waiting[queue->count++];
-  const int kz = tc_main_axis(&placed->lines, __builtin_ctz(placed->lanes));
-  waiting->rays.kz = kz;
-  waiting->lanes = 0;
-  for (unsigned lanes = placed->lanes; lanes; lanes &= lanes - 1) {
-    const int l = __builtin_ctz(lanes);
-    if (!queue->ground->screen && tc_main_axis(&placed->lines, l) != kz) continue;
-    waiting->lanes |= 1U << l;
-    tc_take_ray(queue->ground, placed, l, &waiting->rays);
-    waiting->destination[l] = placed->destination[l];
-    for (int k = 0; k < 3; ++k) {
-      queue->from_center[k][first + l] = placed->place[l].from_center[k];
-      queue->direction[k][first + l] = placed->lines.direction[k][l];
-    }
+  waiting->lanes = placed->lanes;
+  memcpy(waiting->destination, placed->destination, sizeof waiting->destination);
+  for (int k = 0; k < 3; ++k) {
+    memcpy(&queue->from_center[k][first], placed->places.from_center[k], sizeof placed->places.from_center[k]);
+    memcpy(&queue->direction[k][first], placed->lines.direction[k], sizeof placed->lines.direction[k]);
   }
-  placed->lanes &= ~waiting->lanes;
+#if !TC_SINGLE
+  if (!queue->ground->screen) {
+    int kz = 0;
+    waiting->lanes = tc_along_one_axis(&placed->lines, placed->lanes, &kz);
+    tc_take_ray_space(placed, kz, &waiting->rays);
+    placed->lanes &= ~waiting->lanes;
+    return;
+  }
+#endif
+  tc_take_screen(queue->ground->screen, placed, waiting);
+  placed->lanes = 0;
 }
 
 /* ── hits ── */
@@ -160,7 +207,7 @@ TC_NOINLINE void tc_face_reached(const TcQueue *queue, const TcWaiting *waiting,
                                  const TcLanePoints p[3]) {
   TcVec e[3];
   TcCrossing crossing;
-  tc_edges(tc_mask_of(lanes), (const TcLanePoints *const[]){&p[1], &p[2], &p[0]}, (const TcLanePoints *const[]){&p[2], &p[0], &p[1]}, e);
+  tc_edges_of(tc_mask_of(lanes), p, e);
   if (ties) {
     const unsigned negative[3] = {tc_bits(tc_negative(e[0])), tc_bits(tc_negative(e[1])), tc_bits(tc_negative(e[2]))};
     lanes &= ~ties | (negative[0] & negative[1] & negative[2]) | ~(negative[0] | negative[1] | negative[2]);
