@@ -89,7 +89,9 @@ TC_INLINE void advance(const int which, const unsigned on, const TcGround *given
       tc_packet_set_out(on, &ground, p);
       tc_gather_enter(which, job, &packet[i].gather, starting, p);
     }
-    tc_packet_rest(&ground, p, tc_and_not(tc_all(), p->active));
+    const TcMask resting = tc_and_not(tc_all(), p->active);
+    tc_packet_forget(p, resting);
+    tc_packet_rest(&ground, p, resting);
     tc_packet_expect(&ground, p);
   }
   while (!halt) {
@@ -116,6 +118,7 @@ TC_INLINE void advance(const int which, const unsigned on, const TcGround *given
         p->lost |= tc_bits(lost[i]);
         p->waiting |= ended[i] & ~stop;
         p->active = tc_and_not(p->active, tc_mask_of(stop | ended[i]));
+        tc_packet_forget(p, tc_mask_of(stop | ended[i]));
         if (stop) {
           tc_packet_rest(&ground, p, tc_mask_of(stop));
           tc_packet_expect(&ground, p);

@@ -50,6 +50,12 @@ TC_INLINE void tc_packet_rest(const TcGround *ground, TcPacket *p, TcMask mask) 
   TC_IN_MEMORY(p->face);
 }
 
+/* The lanes of `mask` forget their face: as long as they rest, steps make the XOR of its vertices anew, and what it names must be a vertex. */
+TC_INLINE void tc_packet_forget(TcPacket *p, TcMask mask) {
+  const TcWord none = {0};
+  for (int k = 0; k < 3; ++k) p->v[k].id = tc_select_word(mask, none, p->v[k].id);
+}
+
 /* Which vertex comes next, whose numbers are fetched while other things are done. */
 TC_INLINE void tc_packet_expect(const TcGround *ground, TcPacket *p) {
   const uint32_t *cells = (const uint32_t *)(const void *)ground->shell->volume->adjacency.cells;
