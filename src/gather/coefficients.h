@@ -163,8 +163,9 @@ typedef struct TcAbsorption {
 } TcAbsorption;
 
 TC_INLINE TcAbsorption tc_groups_absorb(const unsigned on, const TcCoefficients *c, const TcEnds *kappa, const TcStretch *stretch) {
-  const TcVec zero = tc_set(0), most = tc_set(TC_LARGEST_DENSITY), length = stretch->length * c->scale[0];
-  TcVec a = tc_min(most, kappa->near * length * c->scale[1]), a1 = tc_min(most, kappa->far * length * c->scale[1]); /* NaN stays NaN */
+  const TcVec zero = tc_set(0), most = tc_set(TC_LARGEST_EXTINCTION), length = stretch->length;
+  TcVec a = tc_min(most, kappa->near * c->scale[0] * c->scale[1]) * length; /* NaN stays NaN */
+  TcVec a1 = tc_min(most, kappa->far * c->scale[0] * c->scale[1]) * length;
   TcAbsorption absorption = {.valid = tc_and(stretch->mask, tc_and(tc_eq(a, a), tc_eq(a1, a1))), .spread = zero};
   a = tc_select(absorption.valid, a, zero);
   a1 = tc_select(absorption.valid, a1, zero);
@@ -178,7 +179,9 @@ TC_INLINE void tc_groups_emit(const unsigned on, const TcEnds *emission, const T
   const TcVec zero = tc_set(0), before = beam->block_transmittance;
   TcVec radiance = 0.25 * stretch->length * tc_madd(emission->near, absorption->moments.m0, emission->far * absorption->moments.m1);
   const TcMask valid = tc_and(absorption->valid, tc_eq(radiance, radiance));
-  radiance = tc_select(valid, radiance, zero);
+  /* What lies behind the depth at which rays may end counts for nothing, whether they end there or not. */
+  const TcMask reached = tc_le(beam->depth + beam->block_depth, tc_set(TC_OPAQUE_DEPTH));
+  radiance = tc_select(tc_and(valid, reached), radiance, zero);
   beam->block_radiance = tc_madd(before, radiance, beam->block_radiance);
   beam->block_transmittance *= tc_select(valid, absorption->moments.transmittance, tc_set(1));
   beam->block_depth += tc_select(valid, absorption->depth, zero);

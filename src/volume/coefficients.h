@@ -16,6 +16,9 @@ typedef struct TcCoefficients {
   double scale[2]; /* extinction times both is that of the volume's unit of length */
 } TcCoefficients;
 
+/* Larger extinctions, in the volume's unit, count as this: a cell is shorter than 4, which leaves room for TC_LARGEST_DENSITY. */
+#define TC_LARGEST_EXTINCTION 0x1p1017
+
 /* A negative extinction is TETCAST_ERROR_DATA, fields of another size TETCAST_ERROR_ARGUMENT. */
 TetcastStatus tc_coefficients_create(const TetcastVolume *volume, const TetcastCoefficientsDesc *desc, TcCoefficients **out);
 void tc_coefficients_destroy(TcCoefficients *coefficients);
