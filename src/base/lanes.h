@@ -51,6 +51,13 @@ typedef uint32_t TcWord __attribute__((vector_size(TC_LANES * sizeof(uint32_t)))
 #define TC_AT(vector, lane) ((vector)[lane])
 #endif
 
+/* TcWide: doubles, whatever a TcVec is: rays are set up with them. */
+#if TC_LANES == 1
+typedef double TcWide;
+#else
+typedef double TcWide __attribute__((vector_size(TC_LANES * sizeof(double))));
+#endif
+
 #define TC_EACH_LANE for (int l = 0; l < TC_LANES; ++l)
 
 enum { TC_ALL_LANES = (1 << TC_LANES) - 1 };
@@ -60,6 +67,7 @@ typedef TcReal TcRecord __attribute__((vector_size(4 * sizeof(TcReal))));
 
 TC_INLINE TcVec tc_set(TcReal x) { return x - (TcVec){0}; }
 TC_INLINE TcInt tc_set_int(TcInteger x) { return x - (TcInt){0}; }
+TC_INLINE TcWide tc_set_wide(double x) { return x - (TcWide){0}; }
 TC_INLINE TcWord tc_set_word(uint32_t x) { return x - (TcWord){0}; }
 TC_INLINE TcVec tc_load(const TcReal *from) {
   TcVec v;
@@ -92,6 +100,38 @@ TC_INLINE void tc_store_word(uint32_t *to, TcWord v) { memcpy(to, &v, sizeof v);
 TC_INLINE TcMask tc_all(void) { return tc_mask_of(TC_ALL_LANES); }
 TC_INLINE TcMask tc_none(void) { return tc_mask_of(0); }
 TC_INLINE TcMask tc_gt(TcVec a, TcVec b) { return tc_lt(b, a); }
+TC_INLINE unsigned tc_wide_le(TcWide a, TcWide b) { /* bits of lanes */
+  unsigned bits = 0;
+#if TC_LANES == 1
+  bits = a <= b;
+#elif defined(__AVX512F__)
+  for (int i = 0; i < TC_LANES / 8; ++i) {
+    bits |= (unsigned)_mm512_cmp_pd_mask(_mm512_loadu_pd((const double *)&a + 8 * i), _mm512_loadu_pd((const double *)&b + 8 * i), _CMP_LE_OQ) << 8 * i;
+  }
+#else
+  for (int i = 0; i < TC_LANES / 4; ++i) {
+    const __m256d less = _mm256_cmp_pd(_mm256_loadu_pd((const double *)&a + 4 * i), _mm256_loadu_pd((const double *)&b + 4 * i), _CMP_LE_OQ);
+    bits |= (unsigned)_mm256_movemask_pd(less) << 4 * i;
+  }
+#endif
+  return bits;
+}
+TC_INLINE TcWide tc_sqrt_wide(TcWide a) {
+#if TC_LANES == 1
+  return sqrt(a);
+#else
+  TcWide root;
+  for (int i = 0; i < TC_LANES / 4; ++i) _mm256_storeu_pd((double *)&root + 4 * i, _mm256_sqrt_pd(_mm256_loadu_pd((const double *)&a + 4 * i)));
+  return root;
+#endif
+}
+TC_INLINE TcVec tc_real_of_wide(TcWide a) {
+#if TC_LANES == 1
+  return (TcVec)a;
+#else
+  return __builtin_convertvector(a, TcVec);
+#endif
+}
 TC_INLINE bool tc_any(TcMask m) { return tc_bits(m) != 0; }
 TC_INLINE TcVec tc_select3(TcMask m, TcVec a, TcMask n, TcVec b, TcVec c) { return tc_select(m, a, tc_select(n, b, c)); }
 

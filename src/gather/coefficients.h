@@ -323,7 +323,7 @@ TC_NOINLINE void tc_groups_end(const unsigned on, const TcGatherJob *job, TcGrou
     }
     sums[3 * c->groups][l] = (double)TC_AT(groups->length.sum, l);
     sums[3 * c->groups + 1][l] = opacity;
-    sums[3 * c->groups + 2][l] = bound;
+    if (on & TC_BOUND) sums[3 * c->groups + 2][l] = bound;
   }
 }
 

@@ -187,7 +187,7 @@ TC_INLINE TcMask tc_emission_complete(const unsigned on, const TcGatherJob *job,
 #endif
 }
 
-/* Red, green, blue, alpha, and a bound on their error, with TC_BOUND. */
+/* Red, green, blue, alpha. */
 TC_INLINE void tc_emission_end(const unsigned on, const TcGatherJob *job, TcEmission *e, const TcEnding *ending, double (*sums)[TC_LANES]) {
   tc_emission_end_block(on, e);
 #if TC_SINGLE
@@ -199,10 +199,9 @@ TC_INLINE void tc_emission_end(const unsigned on, const TcGatherJob *job, TcEmis
     if (on & TC_COLORED) memcpy(sums[k], e->color[k], sizeof e->color[k]);
     else TC_EACH_LANE sums[k][l] = sums[3][l] * job->pieces->largest[k];
   }
+  if (!(on & TC_BOUND)) return;
   TC_EACH_LANE {
-    sums[4][l] = NAN;
-    if (!(on & TC_BOUND)) continue;
-    const double moved = (double)TC_AT(e->moved, l) * (TC_SINGLE ? job->tolerance.per_spread : 1) + job->tolerance.per_shift * ending->shift[l];
+    const double moved = (double)TC_AT(e->moved, l) * (TC_SINGLE ? job->tolerance.per_spread : 1) + job->tolerance.per_shift * (double)TC_AT(ending->shift, l);
     sums[4][l] = tc_tolerance_bound(&job->tolerance, e->depth[l], ending->stopped >> l & 1, sums[3][l], ending->steps, moved);
   }
 }

@@ -27,7 +27,6 @@ TC_INLINE void tc_sampled_end(const unsigned on, const TcGatherJob *job, TcSampl
   double rgba[4];
   tc_light_end(light, rgba);
   for (int k = 0; k < 4; ++k) sums[k][0] = rgba[k];
-  sums[4][0] = NAN;
 }
 
 #define tc_sampled_enter(job, light, mask, walk) ((void)0)

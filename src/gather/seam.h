@@ -6,7 +6,8 @@
  *     enter(job, state, mask, walk)                the lanes of `mask` set out from a face of the shell
  *     segment(on, job, state, mask, passage)       the lanes of `mask` have crossed a cell, or what counts of it; those of others their state is kept
  *     complete(on, job, state, active, steps)      after each step: the lanes for which nothing behind can change anything
- *     end(on, job, state, ending, sums)            what has been gathered, as TcGatherJob.sums numbers of each lane
+ *     end(on, job, state, ending, sums)            what has been gathered, as TcGatherJob.sums numbers of each lane; with
+ *                                                  TC_BOUND, a bound on the error of all of them is the last
  *
  * A new one is a file like length.h, a line in gather.h and a row in kernels.def. */
 #ifndef TC_GATHER_SEAM_H
@@ -46,7 +47,7 @@ typedef struct TcPassage {
 typedef struct TcEnding {
   unsigned stopped; /* lanes of rays that were complete before all was seen */
   int64_t steps;    /* of the packet */
-  double shift[TC_LANES]; /* with TC_BOUND */
+  TcVec shift; /* with TC_BOUND */
 } TcEnding;
 
 /* The scalar of the cells in the lanes of `mask`; of some cell in others. */

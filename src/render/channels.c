@@ -30,12 +30,12 @@ double tc_gathered_pixel(const TcGathered *g, double rgba[4]) {
   const TcCoefficients *c = g->coefficients;
   if (!c) {
     for (int k = 0; k < 4; ++k) rgba[k] = g->sums[k];
-    return g->sums[4];
+    return g->bounded ? g->sums[4] : NAN;
   }
   double mean = 0;
   for (int i = 0; i < c->groups; ++i) mean += radiance_of(g, i);
   mean /= c->groups;
   for (int k = 0; k < 3; ++k) rgba[k] = c->groups == 3 ? radiance_of(g, k) : mean;
   rgba[3] = g->sums[3 * c->groups + 1];
-  return g->sums[3 * c->groups + 2];
+  return g->bounded ? g->sums[3 * c->groups + 2] : NAN;
 }

@@ -14,6 +14,7 @@ typedef struct TcGathered {
   const double *sums;
   const TcCoefficients *coefficients; /* NULL: a transfer function */
   int exponent;                       /* of the volume's unit of length */
+  bool bounded;                       /* the last sum is a bound on the error of red, green, blue, alpha */
   double error;                       /* bound on that of red, green, blue, alpha */
 } TcGathered;
 

@@ -240,31 +240,35 @@ static void begin_packet(const int which, const TcGatherJob *job, TcWaiting *wai
   p->seen = p->rays.begin;
   p->shift = tc_set(0);
   p->steps = 0;
-  for (int l = 0; l < TC_LANES; ++l) {
-    p->next[l] = 0;
-    if (p->lanes >> l & 1 && tc_packet_next_start(p, l)) p->starting |= 1U << l;
+  unsigned starting = 0;
+  TC_EACH_LANE {
+    p->next[l] = 1;
+    starting |= (unsigned)(hits[l].count > 0) << l;
   }
+  p->starting = starting & p->lanes;
   tc_gather_begin(which, job, &packet->gather);
   packet->under_way = true;
 }
 
 static void finish_packet(const TcJob *job, State *state, TcWorker *worker, Packet *packet, double *sums) {
-  double gathered[TC_MAX_SUMS][TC_LANES];
+  double gathered[TC_MAX_SUMS][TC_LANES], nowhere[TC_MAX_SUMS];
   TcPacket *p = &packet->walk;
-  TcEnding ending = {.stopped = p->stopped, .steps = p->steps};
-  for (int l = 0; l < TC_LANES; ++l) ending.shift[l] = (double)TC_AT(p->shift, l);
+  const TcEnding ending = {.stopped = p->stopped, .steps = p->steps, .shift = p->shift};
   tc_gather_end(rows[job->kernel].gatherer, rows[job->kernel].features, &state->job, &packet->gather, &ending, gathered);
   if (!TC_SINGLE) worker->lost += __builtin_popcount(p->lost);
-  for (unsigned lanes = p->lanes; lanes; lanes &= lanes - 1) {
-    const int l = __builtin_ctz(lanes);
-    const int64_t pixel = PIXEL_OF(p->destination[l]);
+  double *to[TC_LANES];
+  TC_EACH_LANE {
+    bool counts = p->lanes >> l & 1;
 #if TC_SINGLE
-    if (p->lost >> l & 1 || !(gathered[job->sums - 1][l] <= job->tolerance.most)) {
-      state->again[state->again_count++] = (TcSample){.pixel = pixel, .sample = (int)(p->destination[l] >> 32)};
-      continue;
+    if (counts && (p->lost >> l & 1 || !(gathered[job->sums - 1][l] <= job->tolerance.most))) {
+      state->again[state->again_count++] = (TcSample){.pixel = PIXEL_OF(p->destination[l]), .sample = (int)(p->destination[l] >> 32)};
+      counts = false;
     }
 #endif
-    for (int k = 0; k < job->sums; ++k) sums[pixel * job->sums + k] += gathered[k][l];
+    to[l] = counts ? sums + PIXEL_OF(p->destination[l]) * job->sums : nowhere;
+  }
+  for (int k = 0; k < job->sums; ++k) {
+    TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) to[l][k] += gathered[k][l];
   }
   packet->under_way = false;
 }
@@ -334,6 +338,17 @@ static bool run_packets(const TcJob *job, State *state, TcWorker *worker, const 
   }
 }
 
+/* Places rays. Those that pass the volume are left out, and gather at once what a ray does that meets nothing: of groups, a transmittance of 1. */
+static void place_rays(const TcJob *job, const TcGround *ground, double *sums, TcPlaced *placed) {
+  unsigned left_out = placed->lanes;
+  tc_place(ground, placed);
+  left_out &= ~placed->lanes;
+  for (; TC_UNLIKELY(job->coefficients != NULL) && left_out; left_out &= left_out - 1) {
+    double *of_ray = sums + PIXEL_OF(placed->destination[__builtin_ctz(left_out)]) * job->sums;
+    for (int g = 0; g < job->coefficients->groups; ++g) of_ray[3 * g + 2] += 1;
+  }
+}
+
 /* ── a tile ── */
 
 enum { PACKET_X = TC_LANES == 1 ? 1 : TC_LANES == 4 ? 2 : 4, PACKET_Y = TC_LANES / PACKET_X }; /* a packet's pixels */
@@ -345,52 +360,46 @@ typedef struct Tile {
   int64_t x0, y0, x1, y1;
   int64_t x, y; /* of the packet whose rays come next */
   int sample;
+  double *sums;
 } Tile;
 
-/* Places the rays of samples of pixels, one in each lane. */
-static void place_samples(const TcJob *job, const TcGround *ground, const double x[TC_LANES], const double y[TC_LANES], const double sample_x[TC_LANES],
-                          const double sample_y[TC_LANES], TcPlaced *placed) {
+/* Places the rays through places of the grid of samples, one in each lane. */
+static void place_samples(const TcJob *job, const TcGround *ground, const TcWide *column, const TcWide *row, double *sums, TcPlaced *placed) {
   TcLines *lines = &placed->lines;
   const double samples_x = job->samples_x, samples_y = job->samples_y;
-  const double width = (double)job->width * samples_x, height = (double)job->height * samples_y;
-  const double x0 = job->screen ? job->screen->x0 : 0, y0 = job->screen ? job->screen->y0 : 0;
-  double column[TC_LANES], row[TC_LANES], u[TC_LANES], v[TC_LANES];
-  TC_EACH_LANE {
-    column[l] = x[l] * samples_x + sample_x[l] + 0.5;
-    row[l] = y[l] * samples_y + sample_y[l] + 0.5;
+  const TcWide across = *column + 0.5, down = *row + 0.5;
+  const TcWide u = across * (2 / ((double)job->width * samples_x)) - 1, v = 1 - down * (2 / ((double)job->height * samples_y));
+  if (job->screen) {
+    lines->x = across / samples_x - job->screen->x0;
+    lines->y = down / samples_y - job->screen->y0;
   }
-  const double u1 = 2 / width, v1 = 2 / height;
-  TC_EACH_LANE {
-    u[l] = column[l] * u1 - 1;
-    v[l] = 1 - row[l] * v1;
-    lines->x[l] = column[l] / samples_x - x0;
-    lines->y[l] = row[l] / samples_y - y0;
-    lines->begin[l] = 0;
-    lines->end[l] = INFINITY;
-  }
-  tc_view_lines(&job->view, u, v, lines);
-  tc_place(ground, placed);
+  lines->begin = tc_set_wide(0);
+  lines->end = tc_set_wide(INFINITY);
+  tc_view_lines(&job->view, &u, &v, lines);
+  place_rays(job, ground, sums, placed);
 }
 
 /* Places the rays of the next packet of pixels. */
 static void place_next(Tile *tile) {
   const TcJob *job = tile->job;
   TcPlaced *placed = tile->placed;
-  double x[TC_LANES], y[TC_LANES], sample_x[TC_LANES], sample_y[TC_LANES];
-  const double sx = tile->sample % job->samples_x, sy = tile->sample / job->samples_x;
   const int64_t width = tile->x1 - tile->x0, first = (tile->y - tile->y0) * width + tile->x - tile->x0;
   const int columns = (int)(tile->x1 - tile->x), rows_left = (int)(tile->y1 - tile->y);
+  const int sample_x = tile->sample % job->samples_x, sample_y = tile->sample / job->samples_x;
+  const double column = (double)(tile->x * job->samples_x + sample_x), row = (double)(tile->y * job->samples_y + sample_y);
+  TcWide x, y;
   unsigned inside = 0;
-  TC_EACH_LANE {
-    x[l] = (double)(tile->x + l % PACKET_X);
-    y[l] = (double)(tile->y + l / PACKET_X);
-    sample_x[l] = sx;
-    sample_y[l] = sy;
-    placed->destination[l] = DESTINATION(first + l / PACKET_X * width + l % PACKET_X, tile->sample);
-    inside |= (unsigned)((l % PACKET_X < columns) & (l / PACKET_X < rows_left)) << l;
+  TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) {
+    const int i = l % PACKET_X, j = l / PACKET_X;
+    TC_AT(x, l) = i;
+    TC_AT(y, l) = j;
+    placed->destination[l] = DESTINATION(first + j * width + i, tile->sample);
+    inside |= (unsigned)((i < columns) & (j < rows_left)) << l;
   }
+  x = x * job->samples_x + column;
+  y = y * job->samples_y + row;
   placed->lanes = inside;
-  place_samples(job, &tile->state->ground, x, y, sample_x, sample_y, placed);
+  place_samples(job, &tile->state->ground, &x, &y, tile->sums, placed);
   if (++tile->sample < job->samples_x * job->samples_y) return;
   tile->sample = 0;
   tile->y += PACKET_Y; /* so that two packets in turn fill a square, or nearly */
@@ -429,7 +438,7 @@ static bool walk_again(const Tile *tile, State *state, TcWorker *worker, double 
 
 static bool render_tile(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker, double *sums) {
   State *state = prepare(job, worker);
-  Tile tile = {.job = job, .state = state, .placed = &state->placed, .x0 = x0, .y0 = y0, .x1 = x1, .y1 = y1, .x = x0, .y = y0};
+  Tile tile = {.job = job, .state = state, .placed = &state->placed, .x0 = x0, .y0 = y0, .x1 = x1, .y1 = y1, .x = x0, .y = y0, .sums = sums};
   const Source source = {next_of_tile, &tile, sums};
   do {
     if (!run_packets(job, state, worker, &source)) return false;
@@ -448,22 +457,22 @@ typedef struct Samples {
   TcPlaced *placed;
   const TcSample *samples;
   int64_t count, next;
+  double *sums;
 } Samples;
 
 static void place_some(Samples *some) {
   TcPlaced *placed = some->placed;
-  double x[TC_LANES], y[TC_LANES], sample_x[TC_LANES], sample_y[TC_LANES];
+  const TcJob *job = some->job;
+  TcWide column = tc_set_wide(0), row = column;
   placed->lanes = 0;
   TC_EACH_LANE {
     const TcSample *s = &some->samples[some->next < some->count ? some->next : 0];
-    x[l] = (double)s->x;
-    y[l] = (double)s->y;
-    sample_x[l] = s->sample % some->job->samples_x;
-    sample_y[l] = s->sample / some->job->samples_x;
+    TC_AT(column, l) = (double)(s->x * job->samples_x + s->sample % job->samples_x);
+    TC_AT(row, l) = (double)(s->y * job->samples_y + s->sample / job->samples_x);
     placed->destination[l] = s->pixel;
     if (some->next++ < some->count) placed->lanes |= 1U << l;
   }
-  place_samples(some->job, some->ground, x, y, sample_x, sample_y, placed);
+  place_samples(job, some->ground, &column, &row, some->sums, placed);
 }
 
 static bool next_of_samples(void *user, TcQueue *queue) {
@@ -476,7 +485,7 @@ static bool next_of_samples(void *user, TcQueue *queue) {
 
 static bool render_samples(const TcJob *job, const TcSample *samples, int64_t count, TcWorker *worker, double *sums) {
   State *state = prepare(job, worker);
-  Samples some = {.job = job, .ground = &state->ground, .placed = &state->placed, .samples = samples, .count = count};
+  Samples some = {.job = job, .ground = &state->ground, .placed = &state->placed, .samples = samples, .count = count, .sums = sums};
   const Source source = {next_of_samples, &some, sums};
   return run_packets(job, state, worker, &source);
 }
@@ -484,28 +493,31 @@ static bool render_samples(const TcJob *job, const TcSample *samples, int64_t co
 /* ── any rays ── */
 
 typedef struct Cast {
+  const TcJob *job;
   const TcGround *ground;
   TcPlaced *placed;
   const TcLine *lines;
   int64_t count, next; /* rays, and the first of those that have not been placed */
+  double *sums;
 } Cast;
 
 static void place_cast(Cast *cast) {
   TcPlaced *placed = cast->placed;
+  TcLines *lines = &placed->lines;
   placed->lanes = 0;
-  for (int l = 0; l < TC_LANES; ++l) {
+  TC_EACH_LANE {
     const TcLine *line = &cast->lines[cast->next < cast->count ? cast->next : 0];
     for (int k = 0; k < 3; ++k) {
-      placed->lines.eye[k][l] = line->eye[k];
-      placed->lines.offset[k][l] = line->offset[k];
-      placed->lines.direction[k][l] = line->direction[k];
+      TC_AT(lines->eye[k], l) = line->eye[k];
+      TC_AT(lines->offset[k], l) = line->offset[k];
+      TC_AT(lines->direction[k], l) = line->direction[k];
     }
-    placed->lines.begin[l] = line->begin;
-    placed->lines.end[l] = line->end;
+    TC_AT(lines->begin, l) = line->begin;
+    TC_AT(lines->end, l) = line->end;
     placed->destination[l] = cast->next;
     if (cast->next++ < cast->count) placed->lanes |= 1U << l;
   }
-  tc_place(cast->ground, placed);
+  place_rays(cast->job, cast->ground, cast->sums, placed);
 }
 
 static bool next_of_cast(void *user, TcQueue *queue) {
@@ -518,7 +530,7 @@ static bool next_of_cast(void *user, TcQueue *queue) {
 
 static bool cast_lines(const TcJob *job, const TcLine *lines, int64_t count, TcWorker *worker, double *sums) {
   State *state = prepare(job, worker);
-  Cast cast = {.ground = &state->ground, .placed = &state->placed, .lines = lines, .count = count};
+  Cast cast = {.job = job, .ground = &state->ground, .placed = &state->placed, .lines = lines, .count = count, .sums = sums};
   const Source source = {next_of_cast, &cast, sums};
   return run_packets(job, state, worker, &source);
 }

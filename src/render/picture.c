@@ -68,7 +68,7 @@ static unsigned association_of(const TcRows *values) {
 static void see_through(const TcRows *values, const TcPieces *pieces, unsigned measured, TcJob *job) {
   job->values = values;
   job->pieces = pieces;
-  job->sums = 5;
+  job->sums = measured ? 5 : 4;
   job->tolerance = tc_tolerance_begin(pieces, 0);
   const unsigned needed = (pieces->one_color ? 0 : TC_COLORED) | (pieces->scaled ? TC_SCALED : 0) | measured;
   job->kernel = choose_row(job->sampler ? "sampled" : "emission", (job->sampler ? 0 : needed) | association_of(values));
@@ -79,7 +79,7 @@ void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job) {
   if (scene->coefficients) {
     job->shell = &scene->volume->shell;
     job->coefficients = scene->coefficients;
-    job->sums = 3 * scene->coefficients->groups + 3;
+    job->sums = 3 * scene->coefficients->groups + (bound ? 3 : 2);
     job->kernel = choose_row("groups", TC_WEIGHTS | TC_CELLS | measured);
     return;
   }
@@ -136,7 +136,8 @@ typedef struct Render {
   const TcIsaKernels *kernels;
   TcScreen screen, precise_screen;
   Working *workers;
-  bool plain; /* pixels of the frame are the sums, and there are no channels */
+  bool bounded; /* a bound on the error is gathered as well */
+  bool plain;   /* pixels of the frame are the sums, and there are no channels */
   int64_t tiles_x, tiles_y;
 } Render;
 
@@ -150,13 +151,14 @@ static bool render_tile(const Render *render, int64_t tile_x, int64_t tile_y, Wo
   if (!render->kernels->tile(job, x0, y0, x1, y1, &working->worker, working->sums)) return false;
   for (int64_t i = 0; samples > 1 && i < numbers; ++i) working->sums[i] /= samples;
   if (render->plain) {
-    for (int64_t y = y0, i = 0; y < y1; ++y) {
-      char *row = (char *)render->frame->pixels + y * render->frame->row_stride + x0 * 4 * (int64_t)sizeof(double);
-      for (int64_t x = 0; x < x1 - x0; ++x, ++i) memcpy(row + 4 * x * (int64_t)sizeof(double), working->sums + 5 * i, 4 * sizeof(double));
+    const int64_t row = (x1 - x0) * 4 * (int64_t)sizeof(double);
+    for (int64_t y = y0; y < y1; ++y) {
+      memcpy((char *)render->frame->pixels + y * render->frame->row_stride + x0 * 4 * (int64_t)sizeof(double), (char *)working->sums + (y - y0) * row,
+             (size_t)row);
     }
     return true;
   }
-  TcGathered gathered = {.sums = working->sums, .coefficients = job->coefficients, .exponent = job->shell->volume->exponent};
+  TcGathered gathered = {.sums = working->sums, .bounded = render->bounded, .coefficients = job->coefficients, .exponent = job->shell->volume->exponent};
   for (int64_t y = y0; y < y1; ++y) {
     for (int64_t x = x0; x < x1; ++x, gathered.sums += job->sums) {
       const double bound = tc_frame_store(render->frame, x, y, &gathered);
@@ -326,6 +328,7 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   job->to_the_end = tc_frame_channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH) || tc_frame_channel(frame, TETCAST_CHANNEL_PATH_LENGTH);
   tc_job_of_scene(scene, measured, job);
   const bool one_by_one = sampler || scene->volume->traversal == TETCAST_TRAVERSAL_FACES;
+  render.bounded = measured;
   render.plain = !scene->coefficients && frame->type == TETCAST_TYPE_FLOAT64 && !measured;
   render.kernels = tc_kernels_for(one_by_one ? TETCAST_ISA_SCALAR : desc->isa);
   plan(scene, desc, measured, &render); /* which may take those in single precision */

@@ -82,6 +82,7 @@ TC_NOINLINE void tc_packet_set_out(const unsigned on, const TcGround *ground, Tc
     for (int k = 0; k < 3; ++k) id[k][l] = face->vertex[k];
     p->cell[l] = face->cell;
     p->face[l] = face->vertex[0] ^ face->vertex[1] ^ face->vertex[2];
+    p->again = (p->again & ~(1U << l)) | (unsigned)(p->hits[l].count - p->next[l] > 1) << l;
   }
   TcLanePoints v[3];
   for (int k = 0; k < 3; ++k) tc_points_load(ground, &p->rays, id[k], &v[k]);
@@ -98,11 +99,7 @@ TC_NOINLINE void tc_packet_set_out(const unsigned on, const TcGround *ground, Tc
   p->seen = tc_select(mask, tc_max(p->at.z, p->rays.begin), p->seen);
   if (on & TC_BOUND) p->shift += tc_select(mask, tc_packet_shift(ground, p), tc_set(0));
   p->active = tc_or(p->active, mask);
-  p->starting = p->again = 0;
-  for (unsigned lanes = tc_bits(p->active) | p->waiting; lanes; lanes &= lanes - 1) {
-    const int l = __builtin_ctz(lanes);
-    if (p->hits[l].count - p->next[l] > 1) p->again |= 1U << l;
-  }
+  p->starting = 0;
 }
 
 /* With TC_CORNERS: the scalars of the cells that are crossed, at their four corners, those of the face's vertices first, then that of q. */

@@ -129,6 +129,27 @@ TC_INLINE void tc_points_of_one(const TcGround *ground, const TcRays *rays, uint
   p->id = tc_set_word(id);
 }
 
+/* Where one vertex is beside all rays, mirrored perhaps. */
+TC_INLINE void tc_point_beside(const TcGround *ground, const TcRays *rays, uint32_t id, TcVec *x, TcVec *y) {
+#if !TC_SINGLE
+  if (TC_UNLIKELY(!ground->screen)) {
+    TcLanePoints p;
+    tc_points_of_one(ground, rays, id, &p);
+    *x = p.x;
+    *y = p.y;
+    return;
+  }
+  const TcReal *at = (const TcReal *)ground->screen->vertices + 4 * (size_t)id;
+  *x = rays->x - at[0];
+  *y = rays->y - at[1];
+#else
+  int32_t at[2];
+  memcpy(at, (const TcReal *)ground->screen->vertices + 4 * (size_t)id, sizeof at);
+  *x = tc_to_real(rays->x - at[0]);
+  *y = tc_to_real(rays->y - at[1]);
+#endif
+}
+
 /* ── edges, faces ── */
 
 /* tc_tie() for the lanes of `zero`. */

@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Rays are set up, one in each lane: in double precision, whatever the lanes are later. */
+#ifndef TC_WALK_PLACE_H
+#define TC_WALK_PLACE_H
+
+#include "base/exact.h"
+#include "walk/packet.h"
+
+/* Rays as they are asked for (TcLine). */
+typedef struct TcLines {
+  TcWide eye[3], offset[3], direction[3], begin, end;
+  TcWide x, y; /* on the screen, in pixels, where there is one */
+} TcLines;
+
+/* Rays set up, those of `lanes` that may meet the volume. */
+typedef struct TcPlaced {
+  TcLines lines;
+  TcWide from_center[3]; /* of the points where they are nearest to the volume's centre */
+  TcWide near;           /* these points' depths: distances from eye + offset */
+  TcWide origin[3], rest[3]; /* in ray space: the same points, as the sum of two numbers */
+  int64_t destination[TC_LANES];
+  unsigned lanes;
+} TcPlaced;
+
+/* The rays of camera `view` through positions (u, v). */
+static void tc_view_lines(const TcView *view, const TcWide *u, const TcWide *v, TcLines *lines) {
+  for (int k = 0; k < 3; ++k) {
+    const TcWide shift = *u * view->right[k] + *v * view->up[k];
+    lines->eye[k] = tc_set_wide(view->eye[k]);
+    lines->offset[k] = view->orthographic ? shift : tc_set_wide(0);
+    lines->direction[k] = view->orthographic ? tc_set_wide(view->forward[k]) : view->forward[k] + shift;
+  }
+  if (view->orthographic) return;
+  const TcWide *d = lines->direction, inverse = 1 / tc_sqrt_wide(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  for (int k = 0; k < 3; ++k) lines->direction[k] *= inverse;
+}
+
+/* In ray space, eye + offset + along · direction as origin + rest, to twice the precision: whatever `along` was rounded to, the point is on the ray,
+ * and vertex − origin is as good as the vertex is. */
+TC_NOINLINE void tc_place_exactly(const TetcastVolume *volume, TcPlaced *placed) {
+  const TcLines *lines = &placed->lines;
+  for (int k = 0; k < 3; ++k) {
+    TC_EACH_LANE {
+      const double eye = TC_AT(lines->eye[k], l), offset = TC_AT(lines->offset[k], l), direction = TC_AT(lines->direction[k], l);
+      const double along = TC_AT(placed->near, l), product = along * direction, shift = product + offset, origin = eye + shift;
+      const double rest = tc_product_error(along, direction, product) + tc_sum_error(product, offset, shift) + tc_sum_error(eye, shift, origin);
+      const double kept = origin > -TC_TINY && origin < TC_TINY ? 0 : origin;
+      TC_AT(placed->rest[k], l) = rest;
+      TC_AT(placed->origin[k], l) = kept;
+      TC_AT(placed->from_center[k], l) = kept - volume->center[k] + rest;
+    }
+  }
+}
+
+/* Leaves out the rays that pass the volume's sphere, or the part of which that counts does, or that are NaN; the sphere has a margin that covers the
+ * rounding here. On the screen only Embree needs the points, which need not be as exact. */
+static void tc_place(const TcGround *ground, TcPlaced *placed) {
+  const TetcastVolume *volume = ground->shell->volume;
+  const TcLines *lines = &placed->lines;
+  TcWide *p = placed->from_center, along = tc_set_wide(0);
+  for (int k = 0; k < 3; ++k) {
+    p[k] = (lines->eye[k] - volume->center[k]) + lines->offset[k];
+    along -= p[k] * lines->direction[k];
+  }
+  placed->near = along;
+  for (int k = 0; k < 3; ++k) p[k] += along * lines->direction[k];
+  if (!ground->screen) tc_place_exactly(volume, placed);
+  const TcWide radius = tc_set_wide(volume->radius);
+  const unsigned inside = tc_wide_le(p[0] * p[0] + p[1] * p[1] + p[2] * p[2], radius * radius);
+  placed->lanes &= inside & tc_wide_le(lines->begin - along, radius) & tc_wide_le(-radius, lines->end - along);
+}
+
+/* Rays on the screen. */
+static void tc_take_screen(const TcScreen *screen, const TcPlaced *placed, TcRays *rays) {
+  const TcLines *lines = &placed->lines;
+  TcWide shift = tc_set_wide(-screen->distance); /* of depths against distances from the eye */
+  if (screen->perspective) {
+    shift /= lines->direction[0] * screen->forward[0] + lines->direction[1] * screen->forward[1] + lines->direction[2] * screen->forward[2];
+  }
+  rays->scale = screen->perspective ? tc_real_of_wide(shift) : tc_set(1);
+  rays->begin = tc_real_of_wide(lines->begin + shift);
+  rays->end = tc_real_of_wide(lines->end + shift);
+#if TC_SINGLE
+  TC_EACH_LANE TC_AT(rays->x, l) = (int32_t)rint(TC_AT(lines->x, l) * screen->unit);
+  TC_EACH_LANE TC_AT(rays->y, l) = (int32_t)rint(TC_AT(lines->y, l) * screen->unit);
+#else
+  rays->x = lines->x;
+  rays->y = lines->y;
+#endif
+}
+
+#if !TC_SINGLE
+/* Rays in ray space, all of them along kz. */
+TC_NOINLINE void tc_take_ray_space(const TcPlaced *placed, int kz, TcRays *rays) {
+  const TcWide *direction = placed->lines.direction, *origin = placed->origin, *rest = placed->rest;
+  const int kx = (kz + 1) % 3, ky = (kz + 2) % 3;
+  const TcVec tiny = tc_set(TC_TINY), zero = tc_set(0), dz = direction[kz];
+#define TC_NOT_TINY(x) tc_select(tc_lt(tc_abs(x), tiny), zero, x)
+  rays->kz = kz;
+  rays->scale = tc_set(1);
+  rays->origin[0] = origin[kx];
+  rays->origin[1] = origin[ky];
+  rays->origin[2] = origin[kz];
+  rays->shear_x = TC_NOT_TINY(direction[kx] / dz);
+  rays->shear_y = TC_NOT_TINY(direction[ky] / dz);
+  rays->inverse_z = 1 / dz;
+  rays->rest_x = TC_NOT_TINY(rest[kx] - rays->shear_x * rest[kz]);
+  rays->rest_y = TC_NOT_TINY(rest[ky] - rays->shear_y * rest[kz]);
+  rays->rest_z = rest[kz] * rays->inverse_z;
+  rays->begin = placed->lines.begin - placed->near;
+  rays->end = placed->lines.end - placed->near;
+#undef TC_NOT_TINY
+}
+
+/* The lanes of `lanes` whose directions are largest in the same component as that of the first of them. */
+static unsigned tc_along_one_axis(const TcLines *lines, unsigned lanes, int *kz) {
+  unsigned result = 0;
+  for (unsigned left = lanes; left; left &= left - 1) {
+    const int l = __builtin_ctz(left);
+    const double x = fabs(TC_AT(lines->direction[0], l)), y = fabs(TC_AT(lines->direction[1], l)), z = fabs(TC_AT(lines->direction[2], l));
+    const int axis = z > (y > x ? y : x) ? 2 : y > x;
+    if (!result) *kz = axis;
+    if (axis == *kz) result |= 1U << l;
+  }
+  return result;
+}
+#endif
+
+/* The next rays of those placed, of one main axis where that matters; returns their lanes, which are those no more that are placed. */
+static unsigned tc_take(const TcGround *ground, TcPlaced *placed, TcRays *rays) {
+  unsigned lanes = placed->lanes;
+#if !TC_SINGLE
+  if (!ground->screen) {
+    int kz = 0;
+    lanes = tc_along_one_axis(&placed->lines, lanes, &kz);
+    tc_take_ray_space(placed, kz, rays);
+    placed->lanes &= ~lanes;
+    return lanes;
+  }
+#endif
+  tc_take_screen(ground->screen, placed, rays);
+  placed->lanes = 0;
+  return lanes;
+}
+
+#endif
