@@ -8,6 +8,7 @@
 #include <tetcast/context.h>
 #include <tetcast/field.h>
 #include <tetcast/frame.h>
+#include <tetcast/integrator.h>
 #include <tetcast/transfer_function.h>
 #include <tetcast/volume.h>
 
@@ -63,26 +64,6 @@ TETCAST_API TetcastStatus tetcast_scene_set_coefficients(TetcastScene *scene, co
 
 /* Number of groups of the coefficients, 0 without. */
 TETCAST_API int tetcast_scene_groups(const TetcastScene *scene);
-
-/* How the light of a cell's segment is computed. All but the exact one are what others do, there to be compared with: with n
- * samples per segment, splitting at no knots (the table does). Cell fields are constant on a segment and always exact. */
-typedef enum TetcastIntegrator {
-  TETCAST_INTEGRATOR_EXACT = 0, /* the closed form, to rounding */
-  TETCAST_INTEGRATOR_MIDPOINT,  /* n ≥ 1 equal steps, each constant as in its middle; error O(1/n²) */
-  TETCAST_INTEGRATOR_TRAPEZOID, /* n ≥ 1 equal steps, each with the mean of its ends; O(1/n²) */
-  TETCAST_INTEGRATOR_GAUSS,     /* Gauss–Legendre with n nodes in [1, TETCAST_MAX_GAUSS]; order 2n in the segment's length */
-  TETCAST_INTEGRATOR_TABLE      /* Ψ interpolated in an n × n table, n in [2, 4096]: K. Moreland, E. Angel 2004 */
-} TetcastIntegrator;
-
-#define TETCAST_MAX_GAUSS 16
-
-/* Instruction sets that there are kernels for, from the slowest to the fastest. */
-typedef enum TetcastIsa {
-  TETCAST_ISA_AUTO = 0, /* the fastest that the processor has */
-  TETCAST_ISA_SCALAR,   /* for any processor, one ray in each lane */
-  TETCAST_ISA_AVX2,     /* with FMA */
-  TETCAST_ISA_AVX512    /* F, VL, DQ */
-} TetcastIsa;
 
 typedef struct TetcastRenderDesc {
   uint32_t cookie;

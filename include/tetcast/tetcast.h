@@ -9,6 +9,7 @@
 #include <tetcast/context.h>
 #include <tetcast/field.h>
 #include <tetcast/frame.h>
+#include <tetcast/integrator.h>
 #include <tetcast/mesh.h>
 #include <tetcast/scene.h>
 #include <tetcast/status.h>

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include <tetcast/scene.h>
+#include <tetcast/integrator.h>
 
 /* Whether this processor runs what is compiled for `isa`. */
 static inline bool tc_cpu_has(TetcastIsa isa) {

@@ -3,7 +3,7 @@
 #ifndef TC_OPTICS_SAMPLED_H
 #define TC_OPTICS_SAMPLED_H
 
-#include <tetcast/scene.h>
+#include <tetcast/integrator.h>
 
 #include "optics/transfer.h"
 

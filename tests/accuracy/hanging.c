@@ -45,7 +45,7 @@ static TetcastCut *cut_cells(Fixture *fixture, bool single, double p[POINTS][3])
   return cut;
 }
 
-static TetcastVolume *volume_with(Fixture *fixture, TetcastTraversal traversal, bool single) {
+static Body body_with(Fixture *fixture, TetcastTraversal traversal, bool single) {
   double p[POINTS][3], values[POINTS];
   TetcastCut *cut = cut_cells(fixture, single, p);
   for (int i = 0; i < POINTS; ++i) values[i] = field_at(p[i]);
@@ -54,13 +54,10 @@ static TetcastVolume *volume_with(Fixture *fixture, TetcastTraversal traversal, 
   desc.tetrahedra = tetcast_cut_tetrahedra(cut);
   TetcastMesh *mesh = NULL;
   assert_int_equal(tetcast_mesh_create(fixture->context, &desc, &mesh), TETCAST_OK);
-  TetcastField *field = field_of(fixture->context, values, POINTS, TETCAST_POINT);
-  TetcastVolume *volume = volume_of(fixture->context, mesh, traversal);
-  assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
-  tetcast_field_destroy(&field);
+  const Body body = body_of(fixture->context, mesh, traversal, values, POINTS, TETCAST_POINT);
   tetcast_mesh_destroy(&mesh);
   tetcast_cut_destroy(&cut);
-  return volume;
+  return body;
 }
 
 /* White, of an extinction that is the field. */
@@ -134,7 +131,7 @@ static void test_pictures(void **state) {
   TetcastTransferFunction *transfer = linear(fixture.context);
   for (int single = 0; single < 2; ++single) {
     for (int traversal = 0; traversal < 2; ++traversal) {
-      TetcastVolume *volume = volume_with(&fixture, traversal ? TETCAST_TRAVERSAL_FACES : TETCAST_TRAVERSAL_SHELL, single);
+      Body body = body_with(&fixture, traversal ? TETCAST_TRAVERSAL_FACES : TETCAST_TRAVERSAL_SHELL, single);
       for (int view = 0; view < 12; ++view) {
         double middle[3] = {1, 0.5, 0.5}, eye[3] = {1 + 4 * cos(view), 0.5 + 4 * sin(view), 0.5 + 2 * sin(3.0 * view)};
         if (view == 10) memcpy(eye, (double[3]){1, 5, 0.5}, sizeof eye); /* along the face between */
@@ -144,12 +141,12 @@ static void test_pictures(void **state) {
         TetcastCamera camera = camera_of(eye[0], eye[1], eye[2], middle[0], middle[1], middle[2]);
         camera.projection = view % 2 ? TETCAST_PERSPECTIVE : TETCAST_ORTHOGRAPHIC;
         camera.height = 3;
-        double *pixels = picture(fixture.context, volume, transfer, &camera, W, H, NULL);
+        double *pixels = picture(fixture.context, &body, transfer, &camera, W, H, NULL);
         const double error = largest_error(pixels, &camera);
         if (!(error <= (single ? 1e-5 : 1e-13))) fail_msg("traversal %d, view %d, single %d: off by %g", traversal, view, single, error);
         free(pixels);
       }
-      tetcast_volume_destroy(&volume);
+      body_destroy(&body);
     }
   }
   tetcast_transfer_function_destroy(&transfer);

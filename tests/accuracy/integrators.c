@@ -5,6 +5,8 @@
 
 #include "optics/sampled.h"
 
+#include "plain.h"
+
 static TetcastTransferFunction *transfer_with(TetcastContext *context, const double (*color)[4], int64_t colors,
                                               const double (*extinction)[2], int64_t extinctions) {
   TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
@@ -39,14 +41,15 @@ static double error_of(TetcastContext *context, int kind, TetcastIntegrator inte
   uint64_t seed = 17;
   for (int i = 0; i < 100; ++i) {
     const double from = 0.1 + 0.2 * uniform(&seed), to = 0.7 + 0.2 * uniform(&seed), length = 1 + uniform(&seed);
-    TcLight exact = tc_light_begin(-1, TC_OPAQUE_DEPTH), sampled = tc_light_begin(-1, TC_OPAQUE_DEPTH);
+    PlainLight exact = {.depth = 0};
+    TcLight sampled = tc_light_begin();
     for (int j = 0; j < parts; ++j) {
       const double s0 = from + (to - from) * j / parts, s1 = from + (to - from) * (j + 1) / parts;
-      tc_light_add(&exact, &transfer->pieces, length / parts, s0, s1);
+      plain_add(&exact, &transfer->pieces, length / parts, s0, s1);
       tc_light_add_sampled(&sampled, &transfer->pieces, sampler, length / parts, s0, s1);
     }
     double a[4], b[4];
-    tc_light_end(&exact, a);
+    plain_end(&exact, a);
     tc_light_end(&sampled, b);
     for (int k = 0; k < 4; ++k) worst = fmax(worst, fabs(a[k] - b[k]));
   }
@@ -94,15 +97,15 @@ static void pictures_converge(void **state) {
   Fixture fixture;
   assert_int_equal(fixture_begin(&fixture, 2, 0), TETCAST_OK);
   Cube cube = cube_create(4, 0.5);
-  TetcastVolume *volume = cube_volume(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
+  Body body = cube_body(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
   TetcastTransferFunction *transfer = transfer_of(fixture.context, 1);
-  TetcastScene *scene = scene_of(fixture.context, volume, transfer);
+  TetcastScene *scene = scene_of(fixture.context, &body, transfer);
   TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
   frame_desc.width = frame_desc.height = 24;
   TetcastFrame *frame;
   assert_int_equal(tetcast_frame_create(fixture.context, &frame_desc, &frame), TETCAST_OK);
   const TetcastCamera camera = camera_of(2.1, 1.7, 3.3, 0.5, 0.5, 0.5);
-  double *exact = picture(fixture.context, volume, transfer, &camera, 24, 24, NULL);
+  double *exact = picture(fixture.context, &body, transfer, &camera, 24, 24, NULL);
   const int counts[][2] = {{0, 0}, {1, 64}, {1, 64}, {1, 16}, {16, 512}};
   for (int integrator = 1; integrator <= 4; ++integrator) {
     double error[2];
@@ -126,7 +129,7 @@ static void pictures_converge(void **state) {
   tetcast_frame_destroy(&frame);
   tetcast_scene_destroy(&scene);
   tetcast_transfer_function_destroy(&transfer);
-  tetcast_volume_destroy(&volume);
+  body_destroy(&body);
   cube_destroy(&cube);
   fixture_end(&fixture);
 }

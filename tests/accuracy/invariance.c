@@ -10,11 +10,11 @@ enum { W = 40, H = 30, VALUES = W * H * 4 };
 static double *render(const Cube *cube, const TetcastCamera *camera, double extinction) {
   Fixture fixture;
   assert_int_equal(fixture_begin(&fixture, 2, 0), TETCAST_OK);
-  TetcastVolume *volume = cube_volume(fixture.context, cube, TETCAST_TRAVERSAL_SHELL);
+  Body body = cube_body(fixture.context, cube, TETCAST_TRAVERSAL_SHELL);
   TetcastTransferFunction *transfer = transfer_of(fixture.context, extinction);
-  double *pixels = picture(fixture.context, volume, transfer, camera, W, H, NULL);
+  double *pixels = picture(fixture.context, &body, transfer, camera, W, H, NULL);
   tetcast_transfer_function_destroy(&transfer);
-  tetcast_volume_destroy(&volume);
+  body_destroy(&body);
   fixture_end(&fixture);
   return pixels;
 }
@@ -198,7 +198,7 @@ static void opacity_is_extinction(void **state) {
   Fixture fixture;
   assert_int_equal(fixture_begin(&fixture, 2, 0), TETCAST_OK);
   Cube cube = cube_create(5, 0.5);
-  TetcastVolume *volume = cube_volume(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
+  Body body = cube_body(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
   const double color[2][4] = {{0, 1, 0.5, 0}, {1, 0, 0.5, 1}}, opacity[3][2] = {{0, 0.01}, {0.5, 0.9}, {1, 0.2}};
   double extinction[3][2];
   for (int i = 0; i < 3; ++i) {
@@ -217,12 +217,12 @@ static void opacity_is_extinction(void **state) {
     desc.unit_distance = 0.3;
     TetcastTransferFunction *transfer;
     assert_int_equal(tetcast_transfer_function_create(fixture.context, &desc, &transfer), TETCAST_OK);
-    pixels[i] = picture(fixture.context, volume, transfer, &oblique, W, H, NULL);
+    pixels[i] = picture(fixture.context, &body, transfer, &oblique, W, H, NULL);
     tetcast_transfer_function_destroy(&transfer);
   }
   assert_true(largest_difference(pixels[0], pixels[1], VALUES) < 1e-14);
   free(pixels[0]), free(pixels[1]);
-  tetcast_volume_destroy(&volume);
+  body_destroy(&body);
   cube_destroy(&cube);
   fixture_end(&fixture);
 }

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* No ray is lost and no segment doubled: random rays, and rays aimed through every vertex, along every edge and within every face plane,
- * on meshes chosen to hurt. TETCAST_RAYS sets the number of random rays (default 400,000 in all; the long run is 1e8). */
-#include "support.h"
+ * on meshes chosen to hurt; in ray space, and on the screen with vertices moved so that rays meet them exactly. TETCAST_RAYS sets the number of
+ * random rays (default 400,000 in all; the long run is 1e8). */
+#include "all_kernels.h"
 
 #include <float.h>
-
-#include "base/cpu.h"
-#include "render/render.h"
 
 /* ── meshes ── */
 
@@ -149,18 +147,21 @@ static Soup soup_hanging(void) {
   return soup;
 }
 
-/* ── one ray three ways ── */
+/* ── one ray several ways ── */
 
+enum { QUEUE = 32 };
+
+/* What has the length of a ray measured: the plain way, one lane that crosses every cell for itself, and all kernels that walk. */
 typedef struct Caster {
   Fixture fixture;
   const Soup *soup;
   TetcastMesh *mesh;
   TetcastVolume *volume[2]; /* shell, faces */
-  TetcastTransferFunction *gray;
-  TcWorker worker;
+  TcJob job[2];             /* the length alone */
+  TcWorker workers[2][ALL_KERNELS];
   int64_t rays;
-  TcLine queue[TC_PACKETS * TC_PACKET]; /* rays that go through the packet kernels together */
-  double queue_length[TC_PACKETS * TC_PACKET];
+  TcLine queue[QUEUE]; /* rays that go through the kernels together */
+  double queue_length[QUEUE];
   int queued;
 } Caster;
 
@@ -169,44 +170,34 @@ static void caster_begin(Caster *caster, const Soup *soup) {
   assert_int_equal(fixture_begin(&caster->fixture, 2, 0), TETCAST_OK);
   caster->soup = soup;
   caster->mesh = cube_mesh(caster->fixture.context, &soup->cube);
-  TetcastField *field = field_of(caster->fixture.context, soup->cube.values, soup->cube.vertex_count, TETCAST_POINT);
   for (int i = 0; i < 2; ++i) {
     caster->volume[i] = volume_of(caster->fixture.context, caster->mesh, i ? TETCAST_TRAVERSAL_FACES : TETCAST_TRAVERSAL_SHELL);
-    assert_int_equal(tetcast_volume_set_field(caster->volume[i], field), TETCAST_OK);
+    caster->job[i] = (TcJob){.kernel = TC_KERNEL_length, .shell = &caster->volume[i]->shell, .sums = 1};
+    for (int k = 0; k < ALL_KERNELS; ++k) {
+      assert_true(tc_worker_begin(caster->fixture.context, all_kernels[k].kernels, &caster->job[i], &caster->workers[i][k]));
+    }
   }
-  tetcast_field_destroy(&field);
-  caster->gray = gray_of(caster->fixture.context, 1e-9); /* thin: nothing ends early, the depth is the length */
-  for (int i = 0; i < TC_RAYS; ++i) caster->worker.spans[i].context = caster->fixture.context;
-  caster->worker.tolerance = tc_tolerance_begin(&caster->gray->pieces, 0);
 }
 
-/* The queued rays by every packet kernel that this processor runs: the length inside is the scalar kernel's. */
+static double size_of(const Soup *soup) { return fmax(soup->size[0], fmax(soup->size[1], soup->size[2])); }
+
+static void compare(const Soup *soup, int kernel, int ray, double length, double plain) {
+  assert_true(isfinite(length) && length >= 0);
+  if (soup->disjoint && !(fabs(length - plain) <= 1e-13 * size_of(soup))) {
+    fail_msg("%s: %s kernel, ray %d: %.17g, the plain way %.17g", soup->name, all_kernels[kernel].kernels->name, ray, length, plain);
+  }
+}
+
+/* The queued rays by every kernel that this processor runs: the length inside is that of the plain way. */
 static void flush(Caster *caster) {
-  static const struct {
-    TetcastIsa isa;
-    TcPacketCast *cast;
-  } kernels[] = {
-#ifdef TC_HAVE_X86
-    {TETCAST_ISA_AVX512, tc_packet_avx512},
-    {TETCAST_ISA_AVX2, tc_packet_avx2},
-#endif
-    {TETCAST_ISA_BASELINE, tc_packet_baseline},
-  };
-  const TetcastVolume *volume = caster->volume[0];
-  const double *size = caster->soup->size, scale = fmax(size[0], fmax(size[1], size[2]));
-  for (size_t i = 0; i < sizeof kernels / sizeof *kernels; ++i) {
-    if (!tc_cpu_has(kernels[i].isa)) continue;
-    TcLight light[TC_PACKETS * TC_PACKET];
-    caster->worker.lost = 0;
-    assert_true(kernels[i].cast(&volume->shell, &caster->gray->pieces, caster->queue, caster->queued, &caster->worker, light));
-    assert_int_equal(caster->worker.lost, 0);
+  for (int k = 0; k < ALL_KERNELS; ++k) {
+    if (!kernel_runs(k, caster->volume[0])) continue;
+    double sums[QUEUE] = {0};
+    TcWorker *worker = &caster->workers[0][k];
+    assert_true(all_kernels[k].kernels->cast(&caster->job[0], caster->queue, caster->queued, worker, sums));
+    assert_int_equal(worker->lost, 0);
     for (int j = 0; j < caster->queued; ++j) {
-      const double length = ldexp(light[j].depth / 1e-9, volume->exponent);
-      assert_true(isfinite(length) && length >= 0);
-      if (caster->soup->disjoint && !(fabs(length - caster->queue_length[j]) <= 1e-13 * scale)) {
-        fail_msg("%s: kernel %d, lane %d: %.17g, scalar %.17g", caster->soup->name, (int)kernels[i].isa, j, length,
-                 caster->queue_length[j]);
-      }
+      compare(caster->soup, k, j, ldexp(sums[j], caster->volume[0]->exponent), caster->queue_length[j]);
     }
   }
   caster->queued = 0;
@@ -214,31 +205,39 @@ static void flush(Caster *caster) {
 
 static void caster_end(Caster *caster) {
   flush(caster);
-  for (int i = 0; i < TC_RAYS; ++i) tc_spans_clear(&caster->worker.spans[i]);
-  tetcast_transfer_function_destroy(&caster->gray);
-  for (int i = 0; i < 2; ++i) tetcast_volume_destroy(&caster->volume[i]);
+  for (int i = 0; i < 2; ++i) {
+    for (int k = 0; k < ALL_KERNELS; ++k) tc_worker_end(caster->fixture.context, &caster->workers[i][k]);
+    tetcast_volume_destroy(&caster->volume[i]);
+  }
   tetcast_mesh_destroy(&caster->mesh);
   fixture_end(&caster->fixture);
 }
 
-/* Length inside, in the mesh's unit, and number of segments. */
+/* Length inside, in the mesh's unit, and number of segments: by the plain walk, or by the kernel that crosses every cell for itself. */
 static double length_of(Caster *caster, int traversal, const double eye[3], const double direction[3], int64_t *segments) {
   const TetcastVolume *volume = caster->volume[traversal];
-  TcLine line = {.direction = {direction[0], direction[1], direction[2]}};
+  TcLine line = {.direction = {direction[0], direction[1], direction[2]}, .end = INFINITY};
   for (int k = 0; k < 3; ++k) line.eye[k] = ldexp(eye[k], -volume->exponent);
-  TcLight light;
-  caster->worker.segments = caster->worker.lost = 0;
-  assert_true(tc_cast(&volume->shell, &caster->gray->pieces, &line, &caster->worker, &light));
-  assert_int_equal(caster->worker.lost, 0);
-  *segments = caster->worker.segments;
-  double rgba[4];
-  tc_light_end(&light, rgba);
-  assert_true(isfinite(light.depth) && light.depth >= 0);
-  const double length = ldexp(light.depth / 1e-9, volume->exponent);
+  double length = 0;
+  if (traversal == 0) {
+    const PlainScene scene = {.shell = &volume->shell};
+    const PlainRay ray = {.line = line};
+    const PlainResult result = plain_cast(&scene, &ray, &length);
+    assert_false(result.lost);
+    *segments = result.segments;
+  } else {
+    TcWorker *worker = &caster->workers[1][0];
+    const int64_t before = worker->segments;
+    assert_true(tc_kernels_one.cast(&caster->job[1], &line, 1, worker, &length));
+    assert_int_equal(worker->lost, 0);
+    *segments = worker->segments - before;
+  }
+  assert_true(isfinite(length) && length >= 0);
+  length = ldexp(length, volume->exponent);
   if (traversal == 0) {
     caster->queue_length[caster->queued] = length;
     caster->queue[caster->queued++] = line;
-    if (caster->queued == TC_PACKETS * TC_PACKET) flush(caster);
+    if (caster->queued == QUEUE) flush(caster);
   }
   return length;
 }
@@ -303,7 +302,7 @@ static void check(Caster *caster, const double eye[3], const double direction[3]
   double length[2];
   for (int i = 0; i < 2; ++i) length[i] = length_of(caster, i, eye, direction, &segments[i]);
   ++caster->rays;
-  const double scale = fmax(soup->size[0], fmax(soup->size[1], soup->size[2]));
+  const double scale = size_of(soup);
 #define WHERE "%s: eye (%a, %a, %a) direction (%a, %a, %a): walk %.17g (%ld), faces %.17g (%ld)"
 #define WHAT soup->name, eye[0], eye[1], eye[2], direction[0], direction[1], direction[2], length[0], (long)segments[0], length[1], (long)segments[1]
   if (soup->disjoint && !(fabs(length[0] - length[1]) <= 1e-13 * scale)) fail_msg(WHERE, WHAT);
@@ -337,7 +336,7 @@ static void random_direction(uint64_t *seed, double d[3]) {
 /* A ray through `point` along `d`, from outside; along an axis the components stay exact. */
 static void shoot(Caster *caster, const double point[3], const double d[3], Aim aim) {
   double eye[3];
-  const double back = 3 * fmax(caster->soup->size[0], fmax(caster->soup->size[1], caster->soup->size[2]));
+  const double back = 3 * size_of(caster->soup);
   for (int k = 0; k < 3; ++k) eye[k] = point[k] - back * d[k];
   check(caster, eye, d, aim);
 }
@@ -377,6 +376,114 @@ static void aimed_rays(Caster *caster, uint64_t *seed) {
   }
 }
 
+/* ── on the screen ── */
+
+/* FINE · SIDE positions a side are so many that moving vertices to them is less than what Embree's boxes are widened by. */
+enum { SIDE = 1 << 20, FINE = 1 << 10, SIGHTS = 6, RANDOM_POSITIONS = 500 };
+
+/* Rays of a picture, at positions on a grid of FINE · SIDE points a side. */
+typedef struct Positions {
+  TcSample *samples;
+  int64_t count;
+} Positions;
+
+/* A position is a column or a row of that grid. */
+static int64_t position_of(double coordinate, double origin) { return (int64_t)floor((coordinate + origin) * FINE); }
+
+static void add_position(Positions *positions, int64_t column, int64_t row) {
+  const int64_t all = (int64_t)SIDE * FINE;
+  if (column < 0 || row < 0 || column >= all || row >= all) return;
+  positions->samples[positions->count] = (TcSample){.x = column / FINE, .y = row / FINE, .pixel = positions->count,
+                                                    .sample = (int)(row % FINE * FINE + column % FINE)};
+  ++positions->count;
+}
+
+/* Through each vertex, through the middle of each edge, and anywhere. The vertices' positions are even. */
+static Positions positions_of(const Caster *caster, const TcScreen *screen, uint64_t *seed) {
+  const TetcastVolume *volume = caster->volume[0];
+  const Cube *cube = &caster->soup->cube;
+  const double *vertices = screen->vertices;
+  int64_t(*at)[2] = malloc((size_t)cube->vertex_count * sizeof *at);
+  Positions positions = {malloc((size_t)(10 * cube->cell_count + RANDOM_POSITIONS) * sizeof *positions.samples), 0};
+  for (int64_t i = 0; i < cube->vertex_count; ++i) {
+    at[volume->vertex_source[i]][0] = position_of(vertices[4 * i], screen->x0);
+    at[volume->vertex_source[i]][1] = position_of(vertices[4 * i + 1], screen->y0);
+  }
+  for (int64_t i = 0; i < cube->cell_count; ++i) {
+    for (int j = 0; j < 4; ++j) {
+      const int64_t *a = at[cube->cells[4 * i + j]];
+      add_position(&positions, a[0], a[1]);
+      for (int k = 0; k < j; ++k) {
+        const int64_t *b = at[cube->cells[4 * i + k]];
+        add_position(&positions, (a[0] + b[0]) / 2, (a[1] + b[1]) / 2);
+      }
+    }
+  }
+  for (int i = 0; i < RANDOM_POSITIONS; ++i) {
+    const double all = (double)SIDE * FINE;
+    add_position(&positions, (int64_t)(uniform(seed) * all), (int64_t)(uniform(seed) * all));
+  }
+  free(at);
+  return positions;
+}
+
+/* The lengths of rays of a picture by every kernel, against the plain way, with vertices moved to where the rays are. */
+static void check_screen(Caster *caster, const TetcastCamera *camera, uint64_t *seed) {
+  TcJob job = caster->job[0];
+  TcScreen screen;
+  const int exponent = caster->volume[0]->exponent;
+  job.width = job.height = SIDE;
+  job.samples_x = job.samples_y = FINE;
+  assert_int_equal(tc_view_create(caster->fixture.context, camera, caster->volume[0], 1, &job.view), TETCAST_OK);
+  assert_true(project_all(&job, &screen));
+  double *vertices = screen.vertices;
+  for (int64_t i = 0; i < 4 * caster->volume[0]->vertex_count; ++i) {
+    if (i % 4 < 2) vertices[i] = (2 * floor(vertices[i] * FINE / 2) + 0.5) / FINE;
+  }
+  const Positions rays = positions_of(caster, &screen, seed);
+  const PlainScene scene = {.shell = job.shell, .screen = &screen};
+  double *plain = malloc((size_t)rays.count * sizeof *plain), *sums = malloc((size_t)rays.count * sizeof *sums);
+  for (int64_t i = 0; i < rays.count; ++i) {
+    const TcSample *s = &rays.samples[i];
+    const PlainRay ray = plain_ray(&job.view, SIDE, SIDE, FINE, FINE, s->x, s->y, s->sample, &screen);
+    assert_false(plain_cast(&scene, &ray, &plain[i]).lost);
+  }
+  for (int k = 0; k < ALL_KERNELS; ++k) {
+    if (!kernel_runs(k, caster->volume[0])) continue;
+    TcWorker *worker = &caster->workers[0][k];
+    memset(sums, 0, (size_t)rays.count * sizeof *sums);
+    assert_true(all_kernels[k].kernels->samples(&job, rays.samples, rays.count, worker, sums));
+    assert_int_equal(worker->lost, 0);
+    for (int64_t i = 0; i < rays.count; ++i) compare(caster->soup, k, (int)i, ldexp(sums[i], exponent), ldexp(plain[i], exponent));
+  }
+  caster->rays += rays.count;
+  free(plain);
+  free(sums);
+  free(rays.samples);
+  free(screen.vertices);
+}
+
+/* From all sides and along the axes, in parallel and in perspective. */
+static void check_screens(Caster *caster, uint64_t *seed) {
+  const double *size = caster->soup->size;
+  for (int i = 0; i < 2 * SIGHTS; ++i) {
+    TetcastCamera camera = {.up = {0, 1, 0}, .fovy = 30, .height = 2 * size_of(caster->soup)};
+    double d[3];
+    random_direction(seed, d);
+    if (i >= SIGHTS) { /* along an axis */
+      for (int k = 0; k < 3; ++k) d[k] = k == i % 3;
+      camera.up[1] = i % 3 != 1;
+      camera.up[2] = i % 3 == 1;
+    }
+    for (int k = 0; k < 3; ++k) {
+      camera.target[k] = 0.5 * size[k];
+      camera.eye[k] = camera.target[k] + 4 * size_of(caster->soup) * d[k];
+    }
+    camera.projection = i % 2 ? TETCAST_ORTHOGRAPHIC : TETCAST_PERSPECTIVE;
+    check_screen(caster, &camera, seed);
+  }
+}
+
 static int64_t random_ray_count(void) {
   const char *text = getenv("TETCAST_RAYS");
   return text ? (int64_t)strtod(text, NULL) : 400000;
@@ -399,7 +506,10 @@ static void run(Soup soup, double share) {
     normalized(d);
     shoot(&caster, point, d, RANDOM);
   }
-  printf("%-28s %6ld cells %9ld aimed and %10ld random rays\n", soup.name, (long)soup.cube.cell_count, (long)aimed, (long)count);
+  const int64_t before = caster.rays;
+  check_screens(&caster, &seed);
+  printf("%-28s %6ld cells %9ld aimed and %10ld random rays, %ld on the screen\n", soup.name, (long)soup.cube.cell_count, (long)aimed,
+         (long)count, (long)(caster.rays - before));
   caster_end(&caster);
   cube_destroy(&soup.cube);
 }
@@ -449,6 +559,7 @@ static void random_cells_terminate(void **state) {
       if (i % 5 == 0) d[0] = 0, d[1] = 0, d[2] = 1;
       shoot(&caster, point, d, RANDOM);
     }
+    if (round % 10 == 0) check_screens(&caster, &seed);
     caster_end(&caster);
     cube_destroy(&soup.cube);
   }

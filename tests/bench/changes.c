@@ -172,7 +172,7 @@ void job_features(const Job *job) {
   for (int round = 0; round < job->scene->rounds; round++) {
     for (int i = 0; i < count; i++) {
       Feature *feature = &features[i];
-      must(tetcast_volume_set_field(tet.volume, fields[feature->values]) == TETCAST_OK, "set field");
+      must(tetcast_scene_set_field(tet.scene, fields[feature->values]) == TETCAST_OK, "set field");
       tet_transfer(&tet, feature->transfer);
       TetcastRenderDesc desc = tetcast_render_desc_default();
       desc.samples = feature->samples;

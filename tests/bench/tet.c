@@ -46,14 +46,12 @@ Clock tet_prepare(Tet *tet) {
   tetcast_volume_destroy(&tet->volume);
   Clock start = clock_now();
   must_be_ok(tetcast_volume_create(tet->context, tet->mesh, NULL, &tet->volume), "volume");
-  must_be_ok(tetcast_volume_set_field(tet->volume, tet->field), "set field");
+  must_be_ok(tetcast_scene_create(tet->context, tet->volume, &tet->scene), "scene");
+  must_be_ok(tetcast_scene_set_field(tet->scene, tet->field), "set field");
   return clock_since(start);
 }
 
 Clock tet_transfer(Tet *tet, const Transfer *transfer) {
-  if (!tet->scene) {
-    must_be_ok(tetcast_scene_create(tet->context, tet->volume, &tet->scene), "scene");
-  }
   TetcastTransferFunctionDesc desc = transfer_desc(transfer);
   TetcastTransferFunction *function = NULL;
   Clock start = clock_now();

@@ -25,10 +25,10 @@ typedef struct Tet {
 void tet_open(Tet *tet, const BenchMesh *mesh, int threads);
 void tet_close(Tet *tet);
 
-/* From mesh and field to a volume ready to be rendered, replacing an earlier one; the time without the freeing. */
+/* From mesh and field to a scene that lacks its transfer function, replacing an earlier one; the time without the freeing. */
 Clock tet_prepare(Tet *tet);
 
-/* Makes the scene if need be and gives it a transfer function. */
+/* Gives the scene a transfer function. */
 Clock tet_transfer(Tet *tet, const Transfer *transfer);
 
 /* Another frame for pictures of pixels², and a picture into it. */

@@ -108,8 +108,10 @@ seconds=$(awk -F ' [|] ' '$1 == "| exact" && $2 == "scalar" { print $3 }' smooth
 [ -n "$cost" ] && [ "$cost" = "$seconds" ] || fail "exact costs '$cost', not what it took in the scalar kernel, '$seconds'"
 grep -q "index 'exact-packets'" smooth/time.gp || fail 'packets are not in the plot'
 ! grep -q packets smooth/stiffness.gp smooth/samples.gp || fail 'packets are in the other plots'
-accept converge cube.vtu --transfer smooth.json -o capped --size 12x9 --repeat 1 --isa baseline $plots
-kernels capped scalar baseline
+if grep -qw avx2 /proc/cpuinfo; then
+  accept converge cube.vtu --transfer smooth.json -o capped --size 12x9 --repeat 1 --isa avx2 $plots
+  kernels capped scalar avx2
+fi
 for options in '--isa scalar' '--traversal faces'; do
   # shellcheck disable=SC2086  # a list of words
   accept converge cube.vtu --transfer smooth.json -o capped --size 12x9 --repeat 1 $options $plots

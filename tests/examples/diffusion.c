@@ -89,7 +89,7 @@ static bool view_make(View *view, const Kuhn *kuhn, const double *u) {
   mesh_desc.tetrahedra = (TetcastArray){.data = kuhn->cells, .type = TETCAST_TYPE_INT64, .count = kuhn->cell_count};
   mesh_desc.ownership = TETCAST_BORROW;
 
-  /* Borrowed: tetcast_volume_set_field() reads u as it is then. */
+  /* Borrowed: tetcast_scene_set_field() reads u as it is then. */
   TetcastFieldDesc field_desc = tetcast_field_desc_default();
   field_desc.values = (TetcastArray){.data = u, .type = TETCAST_TYPE_FLOAT64, .count = kuhn->vertex_count};
   field_desc.ownership = TETCAST_BORROW;
@@ -111,7 +111,7 @@ static bool view_render(View *view, int panel) {
                           .up = {0, 0, 1},
                           .projection = TETCAST_ORTHOGRAPHIC,
                           .height = view_height};
-  return tetcast_volume_set_field(view->volume, view->field) == TETCAST_OK &&
+  return tetcast_scene_set_field(view->scene, view->field) == TETCAST_OK &&
          tetcast_scene_render(view->scene, &camera, NULL, view->panel[panel], NULL) == TETCAST_OK;
 }
 

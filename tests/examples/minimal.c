@@ -60,9 +60,9 @@ int main(void) {
            tetcast_mesh_create(context, &mesh_desc, &mesh) == TETCAST_OK &&
            tetcast_field_create(context, &field_desc, &field) == TETCAST_OK &&
            tetcast_volume_create(context, mesh, NULL, &volume) == TETCAST_OK &&
-           tetcast_volume_set_field(volume, field) == TETCAST_OK &&
            tetcast_transfer_function_create(context, &transfer_desc, &transfer_function) == TETCAST_OK &&
            tetcast_scene_create(context, volume, &scene) == TETCAST_OK &&
+           tetcast_scene_set_field(scene, field) == TETCAST_OK &&
            tetcast_scene_set_transfer_function(scene, transfer_function) == TETCAST_OK &&
            tetcast_frame_create(context, &frame_desc, &frame) == TETCAST_OK &&
            tetcast_scene_render(scene, &camera, NULL, frame, &stats) == TETCAST_OK;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include <tetcast/dataset.h>
+#include <tetcast/scene.h>
 #include <tetcast/volume.h>
 
 #include "fuzz.h"
@@ -82,9 +83,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   TetcastMesh *mesh;
   TetcastVolume *volume;
   TetcastField *field;
+  TetcastScene *scene;
   if (tetcast_dataset_mesh(dataset, &mesh) == TETCAST_OK && tetcast_volume_create(context, mesh, NULL, &volume) == TETCAST_OK) {
-    if (tetcast_dataset_field(dataset, NULL, &field, NULL) == TETCAST_OK) tetcast_volume_set_field(volume, field);
-    tetcast_field_destroy(&field);
+    if (tetcast_scene_create(context, volume, &scene) == TETCAST_OK) {
+      if (tetcast_dataset_field(dataset, NULL, &field, NULL) == TETCAST_OK) tetcast_scene_set_field(scene, field);
+      tetcast_field_destroy(&field);
+      tetcast_scene_destroy(&scene);
+    }
     tetcast_volume_destroy(&volume);
   }
   tetcast_mesh_destroy(&mesh);

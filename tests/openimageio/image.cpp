@@ -252,9 +252,9 @@ static TetcastFrame *render_channels(TetcastType type, int64_t width, int64_t he
   assert_int_equal(tetcast_mesh_create(context, &mesh_desc, &mesh), TETCAST_OK);
   assert_int_equal(tetcast_field_create(context, &field_desc, &field), TETCAST_OK);
   assert_int_equal(tetcast_volume_create(context, mesh, nullptr, &volume), TETCAST_OK);
-  assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
   assert_int_equal(tetcast_transfer_function_create(context, &transfer_desc, &transfer), TETCAST_OK);
   assert_int_equal(tetcast_scene_create(context, volume, &scene), TETCAST_OK);
+  assert_int_equal(tetcast_scene_set_field(scene, field), TETCAST_OK);
   assert_int_equal(tetcast_scene_set_transfer_function(scene, transfer), TETCAST_OK);
   if (groups > 0)
     set_groups(scene, values, groups);

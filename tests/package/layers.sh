@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# layers.sh SOURCE: a folder of src may include only from itself and from folders above it, io and cli nothing but the
-# public headers; only one file knows Embree, only an adapter its library.
+# layers.sh SOURCE: a folder of src may include only from itself and from folders above it, io and cli nothing but the public headers, whether
+# directly or through what they include; optics knows nothing of meshes; only one file knows Embree, only an adapter its library.
 set -eu
 cd "$1"
 status=0
@@ -11,47 +11,107 @@ complain() {
   status=1
 }
 
-# check FOLDER ALLOWED…: each #include "…" in FOLDER names a file of FOLDER, or of an allowed folder from src.
+# What each file includes, and what that includes in turn. Lines of: file, what it includes in the end, the file where that stands.
+reached=$(mktemp)
+trap 'rm -f "$reached"' EXIT
+find src include -type f ! -name '*.py' ! -name '*.cmake' ! -name CMakeLists.txt | sort | while read -r file; do
+  sed -n "s|^[[:space:]]*#[[:space:]]*include[[:space:]]*\([\"<]\)\([^\">]*\)[\">].*|$file \1\2|p" "$file"
+done | awk '
+  # The file that an include names: of the same folder, of src, or a public header, which may be made from NAME.in. As it stands, if none.
+  function file_of(from, name,   folder, word) {
+    word = substr(name, 2)
+    folder = from
+    sub("/[^/]*$", "/", folder)
+    if (name ~ /^"/ && exists(folder word)) return folder word
+    if (name ~ /^"/ && exists("src/" word)) return "src/" word
+    if (exists("include/" word)) return "include/" word
+    if (exists("include/" word ".in")) return "include/" word ".in"
+    return word
+  }
+  function exists(path) {
+    if (!(path in known)) {
+      known[path] = (getline line < path) >= 0
+      close(path)
+    }
+    return known[path]
+  }
+  function follow(top, from,   i, to) {
+    for (i = 1; i <= count[from]; ++i) {
+      to = included[from, i]
+      if ((top, to) in seen) continue
+      seen[top, to] = 1
+      print top, to, from
+      follow(top, to)
+    }
+  }
+  { included[$1, ++count[$1]] = file_of($1, $2) }
+  END { for (file in count) follow(file, file) }' | sort >"$reached"
+
+# check FOLDER ALLOWED…: what files of FOLDER include, in the end, is of FOLDER, of an allowed folder of src, public, or not of here.
 check() {
   folder=$1
   shift
-  for file in $(find "src/$folder" -name '*.[ch]' -o -name '*.cpp' -o -name '*.in'); do
-    for header in $(sed -n 's/^[[:space:]]*#[[:space:]]*include[[:space:]]*"\([^"]*\)".*/\1/p' "$file"); do
-      [ -f "src/$folder/$header" ] && [ "${header#*..}" = "$header" ] && continue
-      allowed=false
-      for other in "$@"; do
-        case $header in
-          *..*) ;;
-          "$other"/*) allowed=true ;;
-        esac
-      done
-      $allowed || complain "$file includes \"$header\", which is not above it"
-    done
-  done
+  allowed=$(printf '|src/%s/' "$folder" "$@")
+  while read -r file to from && [ -n "$file" ]; do
+    complain "$file includes $to, in $from, which is not above it"
+  done <<END
+$(awk -v top="^src/$folder(/|\$)" -v allowed="^(include/${allowed})" '$1 ~ top && $2 ~ /^(src|include)\// && $2 !~ allowed' "$reached")
+END
 }
 
+# never FOLDER PATTERN WHY: nothing that matches PATTERN is included by files of FOLDER in the end.
+never() {
+  while read -r file to from && [ -n "$file" ]; do
+    complain "$file includes $to, in $from: $3"
+  done <<END
+$(awk -v top="^src/$1(/|\$)" -v what="$2" '$1 ~ top && $2 ~ what' "$reached")
+END
+}
+
+core='base mesh optics volume walk gather render'
 above=''
-for folder in base mesh optics traverse render; do
+for folder in $core; do
   # shellcheck disable=SC2086  # a list of folders
-  check $folder $above $folder
+  check $folder $above
   above="$above $folder"
 done
 # shellcheck disable=SC2086
 check tetcast.c $above
-check cli cli
+check cli
 for adapter in src/io/*/; do
   check "io/$(basename "$adapter")"
 done
-
-# Optics knows no mesh.
-for file in $(grep -rlE '#[[:space:]]*include[[:space:]]*["<](mesh/|tetcast/mesh)' src/optics); do
-  complain "$file includes a header of meshes"
+for folder in src/*/; do
+  case " $core io cli " in
+    *" $(basename "$folder") "*) ;;
+    *) complain "$folder is not one of the folders that are tested" ;;
+  esac
 done
+
+never optics '^src/mesh/|^include/tetcast/(mesh|field|cells|volume|scene|frame|dataset|surface)[.]h$' 'optics knows no mesh'
+for folder in $core tetcast.c; do
+  never $folder '^include/tetcast/(dataset|surface|tetgen|image)[.]h$' 'the core knows no adapter'
+done
+if grep -E '^include/tetcast/tetcast[.]h include/tetcast/(dataset|surface|tetgen|image)[.]h ' "$reached"; then
+  complain "the header of all of the core includes an adapter's"
+fi
+while read -r file _ && [ -n "$file" ]; do
+  complain "$file includes itself in the end"
+done <<END
+$(awk '$1 == $2' "$reached")
+END
+
+while read -r file to _ && [ -n "$file" ]; do
+  complain "$file includes $to: by a path of its own"
+done <<END
+$(awk '$1 == $3 && $2 ~ /[.][.]/' "$reached")
+END
+
 # only PATTERN FILE…: an #include that matches PATTERN stands nowhere else in src and include.
 only() {
   pattern=$1
   shift
-  for file in $(grep -rlE "#[[:space:]]*include[[:space:]]*[\"<]($pattern)" src include --include='*.[ch]' --include='*.cpp' --include='*.in'); do
+  for file in $(awk -v what="^($pattern)" '$1 == $3 && $2 ~ what { print $1 }' "$reached" | sort -u); do
     allowed=false
     for place in "$@"; do
       case $file in
@@ -61,14 +121,14 @@ only() {
     $allowed || complain "$file includes $pattern, which belongs to $*"
   done
 }
-only 'embree|rtcore' src/traverse/embree.c
+only 'embree|rtcore' src/volume/embree.c
 only 'vtk[A-Z]' src/io/vtk/
-only 'tetgen\.h' src/io/tetgen/
+only 'tetgen[.]h' src/io/tetgen/
 only 'OpenImageIO' src/io/openimageio/
 only 'jansson' src/cli/
-# The core knows nothing of the adapters' headers.
-for file in $(grep -rlE '#[[:space:]]*include[[:space:]]*<tetcast/(dataset|surface|tetgen|image)\.h>' src/base src/mesh src/optics \
-  src/traverse src/render src/tetcast.c include/tetcast/tetcast.h); do
-  complain "$file includes an adapter's header"
+
+# That the test sees anything at all.
+for line in 'src/render/picture.c src/mesh/adjacency.h src/volume/volume.h' 'src/volume/embree.c embree' 'src/optics/transfer.c src/base/base.h'; do
+  grep -q "^$line" "$reached" || complain "'$line' was not found: the test does not see what is included"
 done
 exit $status

@@ -137,9 +137,10 @@ public:
       add_cell(i, seen);
   }
 
-  /* `folded` is set if cells overlap along the ray: what is seen there is not defined. */
-  std::array<Real, 4> ray_rgba(const Ray<Real> &ray, bool *folded = nullptr) const {
-    std::vector<Segment<Real>> segments;
+  /* What the ray crosses of the cells, in its order. `folded` is set if cells overlap along it: what is seen there is not
+   * defined. */
+  std::vector<Segment<Real>> segments(const Ray<Real> &ray, bool *folded = nullptr) const {
+    std::vector<Segment<Real>> found;
     for (size_t i : candidates(ray)) {
       std::array<Vector<Real>, 4> p;
       for (size_t j = 0; j < 4; j++)
@@ -147,18 +148,23 @@ public:
       const Real s[4] = {cells_[i].values[0], cells_[i].values[1], cells_[i].values[2], cells_[i].values[3]};
       Segment<Real> segment;
       if (clip(p, cells_[i].vertices, s, ray.direction, segment))
-        segments.push_back(segment);
+        found.push_back(segment);
     }
-    std::sort(segments.begin(), segments.end(), [](const auto &a, const auto &b) { return a.t0 < b.t0; });
-    Integral<Real> integral(optics_);
+    std::sort(found.begin(), found.end(), [](const auto &a, const auto &b) { return a.t0 < b.t0; });
     Real end = 0;
-    for (const auto &segment : segments) {
+    for (const auto &segment : found) {
       if (folded && std::min(end, segment.t1) - segment.t0 > Real(1e-15) * segment.t1)
         *folded = true;
       end = std::max(end, segment.t1);
+    }
+    return found;
+  }
+
+  std::array<Real, 4> ray_rgba(const Ray<Real> &ray, bool *folded = nullptr) const {
+    Integral<Real> integral(optics_);
+    for (const auto &segment : segments(ray, folded))
       if (!integral.opaque())
         integral.add(segment);
-    }
     return integral.rgba();
   }
 
@@ -211,6 +217,7 @@ private:
   void add_cell(size_t index, std::set<std::array<int64_t, 4>> &seen) {
     const Mesh &mesh = scene_.mesh;
     Cell cell{mesh.cells[index], {}};
+    std::array<size_t, 4> corner{0, 1, 2, 3};
     auto sorted = cell.vertices;
     std::sort(sorted.begin(), sorted.end());
     if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end() || !seen.insert(sorted).second)
@@ -222,10 +229,14 @@ private:
     const Real volume = six_volumes(p, scale);
     if (absolute(volume) <= Real(1e-18) * scale)
       return; /* flat to the last bit: no ray is inside for a length that counts, and its faces' sides are not known */
-    if (volume < 0)
+    if (volume < 0) {
       std::swap(cell.vertices[0], cell.vertices[1]);
+      std::swap(corner[0], corner[1]);
+    }
     for (size_t j = 0; j < 4; j++) {
-      cell.values[j] = mesh.values[mesh.of_cells ? index : size_t(cell.vertices[j])];
+      cell.values[j] = mesh.values[mesh.of_cells     ? index
+                                   : mesh.of_corners ? 4 * index + corner[j]
+                                                     : size_t(cell.vertices[j])];
       if (!std::isfinite(cell.values[j]))
         return;
     }

@@ -18,8 +18,8 @@ struct Error : std::runtime_error {
 struct Mesh {
   std::vector<std::array<double, 3>> points;
   std::vector<std::array<int64_t, 4>> cells;
-  std::vector<double> values; /* one per point, or one per cell */
-  bool of_cells = false;
+  std::vector<double> values; /* one per point, or one per cell, or four per cell in the order of its points */
+  bool of_cells = false, of_corners = false;
 };
 
 struct Transfer {

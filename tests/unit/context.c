@@ -58,9 +58,9 @@ static TetcastStatus everything(Fixture *fixture, const Cube *cube, TetcastTrave
   if (!status) status = tetcast_mesh_health(context, mesh, &health);
   if (!status) status = tetcast_volume_create(context, mesh, &volume_desc, &volume);
   if (!status) status = tetcast_field_create(context, &field_desc, &field);
-  if (!status) status = tetcast_volume_set_field(volume, field);
-  if (!status) status = tetcast_transfer_function_create_preset(context, volume, "magma", 0, 1, &transfer);
   if (!status) status = tetcast_scene_create(context, volume, &scene);
+  if (!status) status = tetcast_scene_set_field(scene, field);
+  if (!status) status = tetcast_scene_create_preset(scene, "magma", 0, 1, &transfer);
   if (!status) status = tetcast_scene_set_transfer_function(scene, transfer);
   if (!status) status = tetcast_frame_create(context, &frame_desc, &frame);
   if (!status) status = tetcast_scene_render(scene, &camera, NULL, frame, NULL);

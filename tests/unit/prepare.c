@@ -3,7 +3,7 @@
  * memory, and stopped or out of memory at any point. */
 #include "support.h"
 
-#include "traverse/volume.h"
+#include "volume/rows.h"
 
 /* ── meshes ── */
 
@@ -330,7 +330,11 @@ static void memory_is_bounded(void **state) {
     meter.peak = before;
     TetcastVolume *volume = volume_of(context, mesh, TETCAST_TRAVERSAL_SHELL);
     assert_true(meter.peak - before <= 64 * cube.cell_count);
-    assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
+    TetcastScene *scene = NULL;
+    assert_int_equal(tetcast_scene_create(context, volume, &scene), TETCAST_OK);
+    const long long before_field = meter.live;
+    assert_int_equal(tetcast_scene_set_field(scene, field), TETCAST_OK);
+    assert_true(meter.live - before_field <= 8 * cube.vertex_count + 4096 + cube.cell_count / 8); /* values, clusters' ranges */
     TetcastVolumeInfo info;
     tetcast_volume_info(volume, &info);
     const long long resident = meter.live - before - 4 * info.left_out; /* sources are not moved once more */
@@ -340,6 +344,7 @@ static void memory_is_bounded(void **state) {
     assert_true(doubled == (info.left_out > 0) && resident <= bound);
     const long long counted = (long long)(info.bytes - tc_embree_bytes(volume->shell.embree));
     assert_true(counted >= resident - 4096 && counted <= bound);
+    tetcast_scene_destroy(&scene);
     tetcast_volume_destroy(&volume);
     assert_true(meter.live == before);
     tetcast_field_destroy(&field);
@@ -359,10 +364,12 @@ static void volumes_are_ordered(void **state) {
   assert_int_equal(fixture_begin(&fixture, 1, 0), TETCAST_OK);
   for (int threads = 1; threads <= 7; ++threads) {
     assert_int_equal(tetcast_context_set_threads(fixture.context, threads), TETCAST_OK);
-    TetcastVolume *volume = cube_volume(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
+    TetcastMesh *mesh = cube_mesh(fixture.context, &cube);
+    TetcastVolume *volume = volume_of(fixture.context, mesh, TETCAST_TRAVERSAL_SHELL);
+    tetcast_mesh_destroy(&mesh);
     if (!first) first = volume;
     const size_t cells = (size_t)volume->cell_count, vertices = (size_t)volume->vertex_count;
-    assert_memory_equal(volume->vertices, first->vertices, vertices * 4 * sizeof(double));
+    assert_memory_equal(volume->positions, first->positions, vertices * 3 * sizeof(double));
     assert_memory_equal(volume->vertex_source, first->vertex_source, vertices * sizeof *volume->vertex_source);
     assert_memory_equal(volume->adjacency.cells, first->adjacency.cells, cells * sizeof *volume->adjacency.cells);
     if (volume != first) tetcast_volume_destroy(&volume);
@@ -382,63 +389,81 @@ static void volumes_are_ordered(void **state) {
   cube_destroy(&cube);
 }
 
-/* That every record and cell of the volume is the one of the mesh that it says, with its value. */
-static void check_sources(const TetcastVolume *volume, const Cube *cube, const double *cell_values) {
+/* That every vertex and cell of the volume is the one of the mesh that it says, and so is each of the rows' values, if any. */
+static void check_sources(const TetcastVolume *volume, const Cube *cube, const TcRows *rows, const double *values) {
   uint32_t *rank = malloc((size_t)cube->vertex_count * sizeof *rank);
   for (uint32_t i = 0; i < (uint32_t)cube->vertex_count; ++i) {
     const int64_t vertex = volume->vertex_source[i];
-    double record[4];
-    tc_volume_vertex(volume, i, record);
-    for (int k = 0; k < 3; ++k) assert_true(ldexp(record[k], volume->exponent) == cube->vertices[3 * vertex + k]);
-    if (!cell_values) assert_true(record[3] == cube->values[vertex]);
+    double position[3];
+    tc_volume_vertex(volume, i, position);
+    for (int k = 0; k < 3; ++k) assert_true(ldexp(position[k], volume->exponent) == cube->vertices[3 * vertex + k]);
+    if (values && rows->association == TETCAST_POINT) assert_true(tc_rows_value(rows, i, 0) == values[vertex]);
     rank[vertex] = i;
   }
-  assert_true(!volume->cell_values == !cell_values);
   for (int64_t i = 0; i < volume->cell_count; ++i) {
     const int64_t cell = volume->adjacency.source[i];
     uint32_t v[4];
     take_cell(cube, rank, cell, v);
     assert_int_equal(volume->adjacency.cells[i].vertex_xor, v[0] ^ v[1] ^ v[2] ^ v[3]);
-    if (cell_values) assert_true(volume->cell_values[i] == cell_values[cell]);
+    if (values && rows->association == TETCAST_CELL) assert_true(tc_rows_value(rows, i, 0) == values[cell]);
+    if (!values || rows->association != TETCAST_CORNER) continue;
+    for (int k = 0; k < 4; ++k) { /* that of the corner which is the cell's k-th vertex in ascending order */
+      int corner = 0;
+      while (rank[cube->cells[4 * cell + corner]] != v[k]) ++corner;
+      assert_true(tc_rows_value(rows, i, k) == values[4 * cell + corner]);
+    }
   }
   free(rank);
 }
 
-/* Values of points and cells find their places, also when the precision of the records changes with them. */
+/* Values of points, cells and corners find their places, stored in the precision that they came in. */
 static void values_find_their_places(void **state) {
   (void)state;
   Fixture fixture;
   assert_int_equal(fixture_begin(&fixture, 3, 0), TETCAST_OK);
   Cube cube = cube_create(16, 0.3);
   shuffle(&cube, 5);
-  float *single = malloc((size_t)cube.vertex_count * 4 * sizeof *single);
-  double *cell_values = malloc((size_t)cube.cell_count * sizeof *cell_values);
-  for (int64_t i = 0; i < cube.cell_count; ++i) cell_values[i] = (double)i / 7;
-  for (int64_t i = 0; i < 3 * cube.vertex_count; ++i) cube.vertices[i] = (double)(single[i] = (float)cube.vertices[i]);
-  float *values = single + 3 * cube.vertex_count;
-  for (int64_t i = 0; i < cube.vertex_count; ++i) cube.values[i] = (double)(values[i] = (float)cube.values[i]);
+  float *vertices = malloc((size_t)cube.vertex_count * 3 * sizeof *vertices);
+  for (int64_t i = 0; i < 3 * cube.vertex_count; ++i) cube.vertices[i] = (double)(vertices[i] = (float)cube.vertices[i]);
   TetcastMeshDesc mesh_desc = tetcast_mesh_desc_default();
-  mesh_desc.vertices = (TetcastArray){single, TETCAST_TYPE_FLOAT32, cube.vertex_count, 0};
+  mesh_desc.vertices = (TetcastArray){vertices, TETCAST_TYPE_FLOAT32, cube.vertex_count, 0};
   mesh_desc.tetrahedra = (TetcastArray){cube.cells, TETCAST_TYPE_INT64, cube.cell_count, 0};
-  TetcastFieldDesc field_desc = tetcast_field_desc_default();
-  field_desc.values = (TetcastArray){values, TETCAST_TYPE_FLOAT32, cube.vertex_count, 0};
   TetcastMesh *mesh;
-  TetcastField *fields[3];
   assert_int_equal(tetcast_mesh_create(fixture.context, &mesh_desc, &mesh), TETCAST_OK);
-  assert_int_equal(tetcast_field_create(fixture.context, &field_desc, &fields[0]), TETCAST_OK);
-  fields[1] = field_of(fixture.context, cube.values, cube.vertex_count, TETCAST_POINT);
-  fields[2] = field_of(fixture.context, cell_values, cube.cell_count, TETCAST_CELL);
-  TetcastVolume *volume = volume_of(fixture.context, mesh, TETCAST_TRAVERSAL_SHELL);
-  const int sequence[] = {0, 1, 2, 0, 1, 1, 2, 2, 0};
-  for (size_t i = 0; i < sizeof sequence / sizeof *sequence; ++i) {
-    assert_int_equal(tetcast_volume_set_field(volume, fields[sequence[i]]), TETCAST_OK);
-    check_sources(volume, &cube, sequence[i] == 2 ? cell_values : NULL);
-    if (sequence[i] < 2) assert_int_equal(volume->vertices_are_double, sequence[i]);
+  TetcastVolumeDesc volume_desc = tetcast_volume_desc_default();
+  volume_desc.corners = 1;
+  TetcastVolume *volume;
+  assert_int_equal(tetcast_volume_create(fixture.context, mesh, &volume_desc, &volume), TETCAST_OK);
+  assert_false(volume->positions_are_double);
+  const int64_t counts[] = {cube.vertex_count, cube.cell_count, 4 * cube.cell_count};
+  double *values = malloc((size_t)counts[2] * sizeof *values);
+  float *rounded = malloc((size_t)counts[2] * sizeof *rounded);
+  for (int association = TETCAST_POINT; association <= TETCAST_CORNER; ++association) {
+    for (int is_double = 0; is_double < 2; ++is_double) {
+      const int64_t count = counts[association];
+      for (int64_t i = 0; i < count; ++i) {
+        values[i] = (double)i / 7;
+        rounded[i] = (float)values[i];
+        if (!is_double) values[i] = (double)rounded[i];
+      }
+      TetcastFieldDesc desc = tetcast_field_desc_default();
+      desc.values = (TetcastArray){is_double ? (void *)values : (void *)rounded,
+                                   is_double ? TETCAST_TYPE_FLOAT64 : TETCAST_TYPE_FLOAT32, count, 0};
+      desc.association = (TetcastAssociation)association;
+      TetcastField *field;
+      TcRows *rows;
+      assert_int_equal(tetcast_field_create(fixture.context, &desc, &field), TETCAST_OK);
+      assert_int_equal(tc_rows_of_scalar(volume, field, &rows), TETCAST_OK);
+      assert_int_equal(rows->is_double, is_double);
+      assert_int_equal(rows->width, association == TETCAST_CORNER ? 4 : 1);
+      check_sources(volume, &cube, rows, values);
+      tc_rows_release(rows);
+      tetcast_field_destroy(&field);
+    }
   }
   tetcast_volume_destroy(&volume);
-  for (int i = 0; i < 3; ++i) tetcast_field_destroy(&fields[i]);
   tetcast_mesh_destroy(&mesh);
-  free(single), free(cell_values);
+  free(vertices), free(values), free(rounded);
   cube_destroy(&cube);
   fixture_end(&fixture);
 }
@@ -452,9 +477,11 @@ static void any_unit_is_scaled_exactly(void **state) {
     for (int64_t j = 0; j < 3 * cube.vertex_count; ++j) cube.vertices[j] = ldexp(2 * cube.vertices[j] - 1, exponents[i]);
     Fixture fixture;
     assert_int_equal(fixture_begin(&fixture, 1, 0), TETCAST_OK);
-    TetcastVolume *volume = cube_volume(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
+    TetcastMesh *mesh = cube_mesh(fixture.context, &cube);
+    TetcastVolume *volume = volume_of(fixture.context, mesh, TETCAST_TRAVERSAL_SHELL);
+    tetcast_mesh_destroy(&mesh);
     assert_int_equal(volume->exponent, exponents[i] + 1);
-    check_sources(volume, &cube, NULL);
+    check_sources(volume, &cube, NULL, NULL);
     tetcast_volume_destroy(&volume);
     fixture_end(&fixture);
     cube_destroy(&cube);

@@ -10,21 +10,25 @@ typedef struct World {
   Fixture fixture;
   Cube cube;
   TetcastMesh *mesh;
-  TetcastVolume *volume;
+  Body body;
 } World;
+
+/* Another field of the world's points or cells. */
+static void world_field(World *world, const double *values, int64_t count, TetcastAssociation association) {
+  tetcast_field_destroy(&world->body.field);
+  world->body.field = field_of(world->fixture.context, values, count, association);
+}
 
 static void world_begin(World *world, int n, double jitter, TetcastTraversal traversal, int threads) {
   assert_int_equal(fixture_begin(&world->fixture, threads, 0), TETCAST_OK);
   world->cube = cube_create(n, jitter);
   world->mesh = cube_mesh(world->fixture.context, &world->cube);
-  world->volume = volume_of(world->fixture.context, world->mesh, traversal);
-  TetcastField *field = field_of(world->fixture.context, world->cube.values, world->cube.vertex_count, TETCAST_POINT);
-  assert_int_equal(tetcast_volume_set_field(world->volume, field), TETCAST_OK);
-  tetcast_field_destroy(&field);
+  world->body = body_of(world->fixture.context, world->mesh, traversal, world->cube.values, world->cube.vertex_count,
+                        TETCAST_POINT);
 }
 
 static void world_end(World *world) {
-  tetcast_volume_destroy(&world->volume);
+  body_destroy(&world->body);
   tetcast_mesh_destroy(&world->mesh);
   cube_destroy(&world->cube);
   fixture_end(&world->fixture);
@@ -41,7 +45,7 @@ static double *shot(World *world, double factor, int camera, bool orthographic, 
                                  cameras[camera][4], cameras[camera][5]);
   view.projection = orthographic ? TETCAST_ORTHOGRAPHIC : TETCAST_PERSPECTIVE;
   TetcastTransferFunction *transfer = transfer_of(world->fixture.context, factor);
-  double *pixels = picture(world->fixture.context, world->volume, transfer, &view, W, H, stats);
+  double *pixels = picture(world->fixture.context, &world->body, transfer, &view, W, H, stats);
   tetcast_transfer_function_destroy(&transfer);
   return pixels;
 }
@@ -96,7 +100,7 @@ static void uniform_medium_gives_the_chord(void **state) {
         for (int k = 0; k < 3; ++k) camera.target[k] = camera.eye[k] = 0.5;
         camera.eye[axis] = 0.5 + 3 * sign;
         camera.up[(axis + 1) % 3] = 1;
-        double *pixels = picture(world.fixture.context, world.volume, gray, &camera, 17, 17, NULL);
+        double *pixels = picture(world.fixture.context, &world.body, gray, &camera, 17, 17, NULL);
         for (int p = 0; p < 17 * 17; ++p) {
           const int x = p % 17, y = p / 17;
           if (x == 0 || y == 0 || x == 16 || y == 16) {
@@ -125,7 +129,7 @@ static void perspective_chords(void **state) {
   for (size_t c = 0; c < sizeof cameras / sizeof *cameras; ++c) {
     TetcastCamera camera =
       camera_of(cameras[c][0], cameras[c][1], cameras[c][2], cameras[c][3], cameras[c][4], cameras[c][5]);
-    double *pixels = picture(world.fixture.context, world.volume, gray, &camera, W, H, NULL);
+    double *pixels = picture(world.fixture.context, &world.body, gray, &camera, W, H, NULL);
     double forward[3], right[3], up[3], length = 0;
     for (int k = 0; k < 3; ++k) length += pow(camera.target[k] - camera.eye[k], 2);
     for (int k = 0; k < 3; ++k) forward[k] = (camera.target[k] - camera.eye[k]) / sqrt(length);
@@ -176,16 +180,13 @@ static void renumbering_changes_nothing(void **state) {
     for (int k = 0; k < 4; ++k) b.cube.cells[4 * (m - 1 - i) + k] = number[a.cube.cells[4 * i + (k + i) % 4]];
   }
   b.mesh = cube_mesh(b.fixture.context, &b.cube);
-  b.volume = volume_of(b.fixture.context, b.mesh, TETCAST_TRAVERSAL_SHELL);
-  TetcastField *field = field_of(b.fixture.context, b.cube.values, n, TETCAST_POINT);
-  assert_int_equal(tetcast_volume_set_field(b.volume, field), TETCAST_OK);
+  b.body = body_of(b.fixture.context, b.mesh, TETCAST_TRAVERSAL_SHELL, b.cube.values, n, TETCAST_POINT);
   for (int camera = 0; camera < 5; ++camera) {
     double *x = shot(&a, 1, camera, false, NULL), *y = shot(&b, 1, camera, false, NULL);
     assert_true(largest_difference(x, y, VALUES) < 1e-13);
     free(x), free(y);
   }
   free(number);
-  tetcast_field_destroy(&field);
   world_end(&a), world_end(&b);
 }
 
@@ -201,17 +202,15 @@ static void powers_of_two_change_no_bit(void **state) {
     world.cube = cube_create(4, 0.5);
     for (int64_t j = 0; j < 3 * world.cube.vertex_count; ++j) world.cube.vertices[j] *= scale;
     world.mesh = cube_mesh(world.fixture.context, &world.cube);
-    world.volume = volume_of(world.fixture.context, world.mesh, TETCAST_TRAVERSAL_SHELL);
-    TetcastField *field = field_of(world.fixture.context, world.cube.values, world.cube.vertex_count, TETCAST_POINT);
-    assert_int_equal(tetcast_volume_set_field(world.volume, field), TETCAST_OK);
-    tetcast_field_destroy(&field);
+    world.body = body_of(world.fixture.context, world.mesh, TETCAST_TRAVERSAL_SHELL, world.cube.values,
+                         world.cube.vertex_count, TETCAST_POINT);
     TetcastCamera camera = camera_of(2.1, 1.7, 3.3, 0.5, 0.5, 0.5);
     for (int k = 0; k < 3; ++k) {
       camera.eye[k] *= scale;
       camera.target[k] *= scale;
     }
     TetcastTransferFunction *transfer = transfer_of(world.fixture.context, 1 / scale);
-    double *pixels = picture(world.fixture.context, world.volume, transfer, &camera, W, H, NULL);
+    double *pixels = picture(world.fixture.context, &world.body, transfer, &camera, W, H, NULL);
     tetcast_transfer_function_destroy(&transfer);
     if (!first) first = pixels;
     else {
@@ -223,48 +222,68 @@ static void powers_of_two_change_no_bit(void **state) {
   free(first);
 }
 
-/* Fields of cells, fields replaced, float32 input, NaN. */
+/* The picture of a scene as it is now; the caller frees it. */
+static double *shot_of(TetcastContext *context, const TetcastScene *scene) {
+  double *pixels = malloc(VALUES * sizeof *pixels);
+  TetcastFrameDesc desc = tetcast_frame_desc_default();
+  desc.width = W;
+  desc.height = H;
+  desc.pixels = pixels;
+  TetcastFrame *frame = NULL;
+  assert_int_equal(tetcast_frame_create(context, &desc, &frame), TETCAST_OK);
+  const TetcastCamera camera = camera_of(2.1, 1.7, 3.3, 0.5, 0.5, 0.5);
+  const TetcastRenderDesc render = render_desc();
+  assert_int_equal(tetcast_scene_render(scene, &camera, &render, frame, NULL), TETCAST_OK);
+  tetcast_frame_destroy(&frame);
+  return pixels;
+}
+
+/* Gives the scene a field of these values, which goes again. */
+static TetcastStatus show(TetcastContext *context, TetcastScene *scene, const double *values, int64_t count,
+                          TetcastAssociation association) {
+  TetcastField *field = field_of(context, values, count, association);
+  const TetcastStatus status = tetcast_scene_set_field(scene, field);
+  tetcast_field_destroy(&field);
+  return status;
+}
+
+/* Fields of cells, fields replaced, NaN. */
 static void fields_come_and_go(void **state) {
   (void)state;
   World world;
   world_begin(&world, 5, 0.5, TETCAST_TRAVERSAL_SHELL, 2);
   TetcastContext *context = world.fixture.context;
-  double *before = shot(&world, 1, 0, false, NULL);
+  TetcastTransferFunction *transfer = transfer_of(context, 1);
+  TetcastScene *scene = scene_of(context, &world.body, transfer);
+  const int64_t vertices = world.cube.vertex_count, cell_count = world.cube.cell_count;
+  double *before = shot_of(context, scene);
 
   /* constant per cell: as if the point field were constant */
-  double *constant = malloc((size_t)world.cube.cell_count * sizeof *constant);
-  for (int64_t i = 0; i < world.cube.cell_count; ++i) constant[i] = 0.52;
-  TetcastField *field = field_of(context, constant, world.cube.cell_count, TETCAST_CELL);
-  assert_int_equal(tetcast_volume_set_field(world.volume, field), TETCAST_OK);
-  tetcast_field_destroy(&field);
-  double *cells = shot(&world, 1, 0, false, NULL);
-  field = field_of(context, constant, world.cube.vertex_count, TETCAST_POINT);
-  assert_int_equal(tetcast_volume_set_field(world.volume, field), TETCAST_OK);
-  tetcast_field_destroy(&field);
-  double *points = shot(&world, 1, 0, false, NULL);
+  double *constant = malloc((size_t)cell_count * sizeof *constant);
+  for (int64_t i = 0; i < cell_count; ++i) constant[i] = 0.52;
+  assert_int_equal(show(context, scene, constant, cell_count, TETCAST_CELL), TETCAST_OK);
+  double *cells = shot_of(context, scene);
+  assert_int_equal(show(context, scene, constant, vertices, TETCAST_POINT), TETCAST_OK);
+  double *points = shot_of(context, scene);
   assert_true(largest_difference(cells, points, VALUES) < 1e-13);
   assert_true(largest_difference(cells, before, VALUES) > 0.1);
 
   /* a field of the wrong size is refused, and the one before stays */
-  field = field_of(context, constant, 7, TETCAST_POINT);
-  assert_int_equal(tetcast_volume_set_field(world.volume, field), TETCAST_ERROR_ARGUMENT);
-  tetcast_field_destroy(&field);
-  double *still = shot(&world, 1, 0, false, NULL);
+  assert_int_equal(show(context, scene, constant, 7, TETCAST_POINT), TETCAST_ERROR_ARGUMENT);
+  double *still = shot_of(context, scene);
   assert_memory_equal(points, still, VALUES * sizeof *still);
 
   /* all NaN: nothing to see; back to the first field: the same bits */
-  for (int64_t i = 0; i < world.cube.cell_count; ++i) constant[i] = NAN;
-  field = field_of(context, constant, world.cube.cell_count, TETCAST_CELL);
-  assert_int_equal(tetcast_volume_set_field(world.volume, field), TETCAST_OK);
-  tetcast_field_destroy(&field);
-  double *nothing = shot(&world, 1, 0, false, NULL);
+  for (int64_t i = 0; i < cell_count; ++i) constant[i] = NAN;
+  assert_int_equal(show(context, scene, constant, cell_count, TETCAST_CELL), TETCAST_OK);
+  double *nothing = shot_of(context, scene);
   for (int i = 0; i < VALUES; ++i) assert_true(nothing[i] == 0);
-  field = field_of(context, world.cube.values, world.cube.vertex_count, TETCAST_POINT);
-  assert_int_equal(tetcast_volume_set_field(world.volume, field), TETCAST_OK);
-  tetcast_field_destroy(&field);
-  double *after = shot(&world, 1, 0, false, NULL);
+  assert_int_equal(show(context, scene, world.cube.values, vertices, TETCAST_POINT), TETCAST_OK);
+  double *after = shot_of(context, scene);
   assert_memory_equal(before, after, VALUES * sizeof *after);
   free(before), free(cells), free(points), free(still), free(nothing), free(after), free(constant);
+  tetcast_scene_destroy(&scene);
+  tetcast_transfer_function_destroy(&transfer);
   world_end(&world);
 }
 
@@ -278,9 +297,7 @@ static void nan_vertices_are_holes(void **state) {
     const int64_t hole = world.cube.vertex_count / 2;
     const double value = world.cube.values[hole];
     world.cube.values[hole] = traversal ? (double)NAN : (double)INFINITY;
-    TetcastField *field = field_of(context, world.cube.values, world.cube.vertex_count, TETCAST_POINT);
-    assert_int_equal(tetcast_volume_set_field(world.volume, field), TETCAST_OK);
-    tetcast_field_destroy(&field);
+    world_field(&world, world.cube.values, world.cube.vertex_count, TETCAST_POINT);
     double *with_nan = shot(&world, 1, 0, false, NULL);
     int64_t kept = 0;
     for (int64_t i = 0; i < world.cube.cell_count; ++i) {
@@ -292,15 +309,11 @@ static void nan_vertices_are_holes(void **state) {
     world.cube.cell_count = kept;
     world.cube.values[hole] = value;
     TetcastMesh *mesh = cube_mesh(context, &world.cube);
-    TetcastVolume *all = world.volume;
-    world.volume = volume_of(context, mesh, TETCAST_TRAVERSAL_SHELL);
-    field = field_of(context, world.cube.values, world.cube.vertex_count, TETCAST_POINT);
-    assert_int_equal(tetcast_volume_set_field(world.volume, field), TETCAST_OK);
-    tetcast_field_destroy(&field);
+    body_destroy(&world.body);
+    world.body = body_of(context, mesh, TETCAST_TRAVERSAL_SHELL, world.cube.values, world.cube.vertex_count, TETCAST_POINT);
     double *without = shot(&world, 1, 0, false, NULL);
     assert_true(largest_difference(with_nan, without, VALUES) < 1e-13);
     free(with_nan), free(without);
-    tetcast_volume_destroy(&all);
     tetcast_mesh_destroy(&mesh);
     world_end(&world);
   }
@@ -314,13 +327,11 @@ static void samples_average(void **state) {
   TetcastContext *context = world.fixture.context;
   const TetcastCamera camera = camera_of(2.1, 1.7, 3.3, 0.5, 0.5, 0.5);
   TetcastTransferFunction *transfer = transfer_of(context, 1);
-  TetcastScene *scene;
-  assert_int_equal(tetcast_scene_create(context, world.volume, &scene), TETCAST_OK);
-  assert_int_equal(tetcast_scene_set_transfer_function(scene, transfer), TETCAST_OK);
+  TetcastScene *scene = scene_of(context, &world.body, transfer);
   const int grids[2][2] = {{3, 3}, {3, 2}}; /* samples across and down */
   for (int g = 0; g < 2; ++g) {
     const int nx = grids[g][0], ny = grids[g][1], w = 12 / nx, h = 12 / ny;
-    double *fine = picture(context, world.volume, transfer, &camera, 12, 12, NULL);
+    double *fine = picture(context, &world.body, transfer, &camera, 12, 12, NULL);
     TetcastFrameDesc desc = tetcast_frame_desc_default();
     desc.width = w;
     desc.height = h;
@@ -364,9 +375,13 @@ static void cancelling(void **state) {
   TetcastFrame *frame;
   TetcastScene *scene;
   assert_int_equal(tetcast_frame_create(context, &desc, &frame), TETCAST_OK);
-  assert_int_equal(tetcast_scene_create(context, world.volume, &scene), TETCAST_OK);
+  assert_int_equal(tetcast_scene_create(context, world.body.volume, &scene), TETCAST_OK);
   const TetcastCamera camera = camera_of(2.1, 1.7, 3.3, 0.5, 0.5, 0.5);
-  assert_int_equal(tetcast_scene_render(scene, &camera, NULL, frame, NULL), TETCAST_ERROR_ARGUMENT); /* no transfer function */
+  assert_int_equal(tetcast_scene_render(scene, &camera, NULL, frame, NULL), TETCAST_ERROR_ARGUMENT);
+  assert_non_null(strstr(world.fixture.message, "no field"));
+  assert_int_equal(tetcast_scene_set_field(scene, world.body.field), TETCAST_OK);
+  assert_int_equal(tetcast_scene_render(scene, &camera, NULL, frame, NULL), TETCAST_ERROR_ARGUMENT);
+  assert_non_null(strstr(world.fixture.message, "no transfer function"));
   TetcastTransferFunction *transfer = transfer_of(context, 1);
   assert_int_equal(tetcast_scene_set_transfer_function(scene, transfer), TETCAST_OK);
   TetcastRenderDesc render = tetcast_render_desc_default();

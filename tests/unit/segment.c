@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The integral over one segment, against quadrature in extended precision and at the ends of the number range. */
+/* The integral over one segment, against quadrature in extended precision and at the ends of the number range; and what kernels gather from many of them. */
 #include "support.h"
 
+#include "base/cpu.h"
+#include "gather_lanes.h"
 #include "optics/segment.h"
 #include "optics/transfer.h"
 
@@ -98,33 +100,50 @@ static void thin_polynomials_keep_their_bound(void **state) {
   assert_true(worst > 0.5); /* the bound is not far off either */
 }
 
-static TcPieces pieces_of(Fixture *fixture, TetcastTransferFunction **transfer) {
-  *transfer = transfer_of(fixture->context, 3);
-  return (*transfer)->pieces;
-}
+/* ── many segments ── */
+
+static const struct {
+  const char *name;
+  TetcastIsa isa;
+  GatherLanes *gather;
+  double cut, drift; /* bounds */
+} kernels[] = {
+  {"scalar", TETCAST_ISA_SCALAR, gather_one, 2e-14, 1e-12},
+#ifdef TC_HAVE_X86
+  {"avx2", TETCAST_ISA_AVX2, gather_avx2, 2e-14, 1e-12},
+  {"avx512", TETCAST_ISA_AVX512, gather_avx512, 2e-14, 1e-12},
+  {"avx2_f32", TETCAST_ISA_AVX2, gather_avx2_f32, 1e-5, 600 * 0x1p-24},
+  {"avx512_f32", TETCAST_ISA_AVX512, gather_avx512_f32, 1e-5, 600 * 0x1p-24},
+#endif
+};
+enum { KERNELS = sizeof kernels / sizeof *kernels };
 
 /* One segment cut into a thousand gives what the whole gives, also across knots and steps, in both directions. */
 static void cutting_changes_nothing(void **state) {
   (void)state;
+  enum { PARTS = 1000 };
+  static double length[PARTS], s0[PARTS], s1[PARTS];
   Fixture fixture;
   assert_int_equal(fixture_begin(&fixture, 1, 0), TETCAST_OK);
-  TetcastTransferFunction *transfer;
-  const TcPieces pieces = pieces_of(&fixture, &transfer);
+  TetcastTransferFunction *transfer = transfer_of(fixture.context, 3);
   for (int reverse = 0; reverse < 2; ++reverse) {
-    const double from = reverse ? 1.1 : -0.1, to = reverse ? -0.1 : 1.1;
-    TcLight whole = tc_light_begin(-1, TC_OPAQUE_DEPTH), cut = tc_light_begin(-1, TC_OPAQUE_DEPTH);
-    tc_light_add(&whole, &pieces, 0.7, from, to);
+    const double from = reverse ? 1.1 : -0.1, to = reverse ? -0.1 : 1.1, whole = 0.7;
     double s = from;
-    for (int i = 1; i <= 1000; ++i) {
-      const double next = from + (to - from) * i / 1000;
-      tc_light_add(&cut, &pieces, 0.7 * fabs(next - s) / 1.2, s, next);
-      s = next;
+    for (int i = 0; i < PARTS; ++i) {
+      s0[i] = s;
+      s = s1[i] = from + (to - from) * (i + 1) / PARTS;
+      length[i] = whole * fabs(s1[i] - s0[i]) / 1.2;
     }
-    double a[4], b[4];
-    tc_light_end(&whole, a);
-    tc_light_end(&cut, b);
-    for (int k = 0; k < 4; ++k) assert_true(fabs(a[k] - b[k]) < 2e-14);
-    assert_true(a[3] > 0.5);
+    for (int kernel = 0; kernel < KERNELS; ++kernel) {
+      if (!tc_cpu_has(kernels[kernel].isa)) continue;
+      double a[4], b[4];
+      kernels[kernel].gather(&transfer->pieces, &whole, &from, &to, 1, a);
+      kernels[kernel].gather(&transfer->pieces, length, s0, s1, PARTS, b);
+      for (int k = 0; k < 4; ++k) {
+        if (!(fabs(a[k] - b[k]) < kernels[kernel].cut)) fail_msg("%s: %.17g and %.17g", kernels[kernel].name, a[k], b[k]);
+      }
+      assert_true(a[3] > 0.5);
+    }
   }
   tetcast_transfer_function_destroy(&transfer);
   fixture_end(&fixture);
@@ -133,18 +152,26 @@ static void cutting_changes_nothing(void **state) {
 /* 10⁵ equal segments: roundings all point the same way, and still do not pile up. */
 static void many_segments_do_not_drift(void **state) {
   (void)state;
+  enum { SEGMENTS = 100000 };
   Fixture fixture;
   assert_int_equal(fixture_begin(&fixture, 1, 0), TETCAST_OK);
-  const double depth[] = {1e-15, 1e-3, 1.7, 20};
+  double *length = malloc(SEGMENTS * sizeof *length), *value = malloc(SEGMENTS * sizeof *value);
+  for (int i = 0; i < SEGMENTS; ++i) length[i] = 1e-5, value[i] = 0.5;
+  static const double depth[] = {1e-15, 1e-3, 1.7, 20};
   for (int i = 0; i < 4; ++i) {
     TetcastTransferFunction *transfer = gray_of(fixture.context, depth[i]);
-    TcLight light = tc_light_begin(-1, TC_OPAQUE_DEPTH);
-    for (int j = 0; j < 100000; ++j) tc_light_add_constant(&light, &transfer->pieces, 1e-5, 0.5);
-    double rgba[4];
-    tc_light_end(&light, rgba);
-    for (int k = 0; k < 4; ++k) assert_true(fabs(rgba[k] / -expm1(-depth[i]) - 1) < 1e-12);
+    for (int kernel = 0; kernel < KERNELS; ++kernel) {
+      if (!tc_cpu_has(kernels[kernel].isa)) continue;
+      double rgba[4];
+      kernels[kernel].gather(&transfer->pieces, length, value, value, SEGMENTS, rgba);
+      for (int k = 0; k < 4; ++k) {
+        const double off = fabs(rgba[k] / -expm1(-depth[i]) - 1);
+        if (!(off < kernels[kernel].drift)) fail_msg("%s, depth %g: off by %g", kernels[kernel].name, depth[i], off);
+      }
+    }
     tetcast_transfer_function_destroy(&transfer);
   }
+  free(length), free(value);
   fixture_end(&fixture);
 }
 

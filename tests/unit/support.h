@@ -143,40 +143,53 @@ static inline TetcastVolume *volume_of(TetcastContext *context, const TetcastMes
   return volume;
 }
 
-/* A volume of the cube with its point field; it keeps nothing of mesh and field, which go again. */
-static inline TetcastVolume *cube_volume(TetcastContext *context, const Cube *cube, TetcastTraversal traversal) {
-  TetcastMesh *mesh = cube_mesh(context, cube);
-  TetcastField *field = field_of(context, cube->values, cube->vertex_count, TETCAST_POINT);
-  TetcastVolume *volume = volume_of(context, mesh, traversal);
-  assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
-  tetcast_field_destroy(&field);
-  tetcast_mesh_destroy(&mesh);
-  return volume;
+/* A prepared mesh and the field that is seen of it. */
+typedef struct Body {
+  TetcastVolume *volume;
+  TetcastField *field;
+} Body;
+
+static inline Body body_of(TetcastContext *context, const TetcastMesh *mesh, TetcastTraversal traversal,
+                           const double *values, int64_t count, TetcastAssociation association) {
+  return (Body){volume_of(context, mesh, traversal), field_of(context, values, count, association)};
 }
 
-/* The cube with a field of `count` values, stored in single precision: both have to come as such. */
-static inline TetcastVolume *narrow_volume(TetcastContext *context, const Cube *cube, const double *values, int64_t count,
-                                           TetcastAssociation association) {
-  float *vertices = malloc((size_t)cube->vertex_count * 3 * sizeof *vertices), *narrow = malloc((size_t)count * sizeof *narrow);
+/* The cube with its point field. The volume keeps nothing of the mesh, which goes again. */
+static inline Body cube_body(TetcastContext *context, const Cube *cube, TetcastTraversal traversal) {
+  TetcastMesh *mesh = cube_mesh(context, cube);
+  const Body body = body_of(context, mesh, traversal, cube->values, cube->vertex_count, TETCAST_POINT);
+  tetcast_mesh_destroy(&mesh);
+  return body;
+}
+
+/* The cube with a field of `count` values, coordinates and values stored in single precision. */
+static inline Body single_body(TetcastContext *context, const Cube *cube, const double *values, int64_t count,
+                               TetcastAssociation association) {
+  float *vertices = malloc((size_t)cube->vertex_count * 3 * sizeof *vertices);
+  float *rounded = malloc((size_t)count * sizeof *rounded);
   for (int64_t i = 0; i < 3 * cube->vertex_count; ++i) vertices[i] = (float)cube->vertices[i];
-  for (int64_t i = 0; i < count; ++i) narrow[i] = (float)values[i];
+  for (int64_t i = 0; i < count; ++i) rounded[i] = (float)values[i];
   TetcastMeshDesc mesh_desc = tetcast_mesh_desc_default();
   mesh_desc.vertices = (TetcastArray){vertices, TETCAST_TYPE_FLOAT32, cube->vertex_count, 0};
   mesh_desc.tetrahedra = (TetcastArray){cube->cells, TETCAST_TYPE_INT64, cube->cell_count, 0};
   TetcastFieldDesc field_desc = tetcast_field_desc_default();
-  field_desc.values = (TetcastArray){narrow, TETCAST_TYPE_FLOAT32, count, 0};
+  field_desc.values = (TetcastArray){rounded, TETCAST_TYPE_FLOAT32, count, 0};
   field_desc.association = association;
   TetcastMesh *mesh = NULL;
-  TetcastField *field = NULL;
+  Body body = {NULL, NULL};
   assert_int_equal(tetcast_mesh_create(context, &mesh_desc, &mesh), TETCAST_OK);
-  assert_int_equal(tetcast_field_create(context, &field_desc, &field), TETCAST_OK);
-  TetcastVolume *volume = volume_of(context, mesh, TETCAST_TRAVERSAL_SHELL);
-  assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
-  tetcast_field_destroy(&field);
+  assert_int_equal(tetcast_field_create(context, &field_desc, &body.field), TETCAST_OK);
+  body.volume = volume_of(context, mesh, TETCAST_TRAVERSAL_SHELL);
   tetcast_mesh_destroy(&mesh);
   free(vertices);
-  free(narrow);
-  return volume;
+  free(rounded);
+  return body;
+}
+
+/* Scenes of it must be gone. */
+static inline void body_destroy(Body *body) {
+  tetcast_volume_destroy(&body->volume);
+  tetcast_field_destroy(&body->field);
 }
 
 /* Colour and extinction with several knots and a step, extinction times `factor`. */
@@ -243,9 +256,10 @@ static inline TetcastTransferFunction *random_transfer(TetcastContext *context, 
   return transfer;
 }
 
-static inline TetcastScene *scene_of(TetcastContext *context, const TetcastVolume *volume, const TetcastTransferFunction *transfer) {
+static inline TetcastScene *scene_of(TetcastContext *context, const Body *body, const TetcastTransferFunction *transfer) {
   TetcastScene *scene = NULL;
-  assert_int_equal(tetcast_scene_create(context, volume, &scene), TETCAST_OK);
+  assert_int_equal(tetcast_scene_create(context, body->volume, &scene), TETCAST_OK);
+  assert_int_equal(tetcast_scene_set_field(scene, body->field), TETCAST_OK);
   assert_int_equal(tetcast_scene_set_transfer_function(scene, transfer), TETCAST_OK);
   return scene;
 }
@@ -260,7 +274,7 @@ static inline TetcastRenderDesc render_desc(void) {
 }
 
 /* A picture of width × height doubles ×4 that the caller frees. */
-static inline double *picture(TetcastContext *context, const TetcastVolume *volume, const TetcastTransferFunction *transfer,
+static inline double *picture(TetcastContext *context, const Body *body, const TetcastTransferFunction *transfer,
                               const TetcastCamera *camera, int width, int height, TetcastRenderStats *stats) {
   double *pixels = malloc((size_t)width * (size_t)height * 4 * sizeof *pixels);
   TetcastFrameDesc desc = tetcast_frame_desc_default();
@@ -268,7 +282,7 @@ static inline double *picture(TetcastContext *context, const TetcastVolume *volu
   desc.height = height;
   desc.pixels = pixels;
   TetcastFrame *frame = NULL;
-  TetcastScene *scene = scene_of(context, volume, transfer);
+  TetcastScene *scene = scene_of(context, body, transfer);
   TetcastRenderStats own;
   assert_int_equal(tetcast_frame_create(context, &desc, &frame), TETCAST_OK);
   const TetcastRenderDesc render = render_desc();

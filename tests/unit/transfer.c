@@ -91,23 +91,25 @@ static void presets_fit_any_unit(void **state) {
     Cube cube = cube_create(4, 0.3);
     for (int64_t j = 0; j < 3 * cube.vertex_count; ++j) cube.vertices[j] *= scales[i];
     TetcastMesh *mesh = cube_mesh(fixture.context, &cube);
-    TetcastVolume *volume = volume_of(fixture.context, mesh, TETCAST_TRAVERSAL_SHELL);
-    TetcastField *field = field_of(fixture.context, cube.values, cube.vertex_count, TETCAST_POINT);
+    Body body = body_of(fixture.context, mesh, TETCAST_TRAVERSAL_SHELL, cube.values, cube.vertex_count, TETCAST_POINT);
+    TetcastScene *scene = NULL;
+    assert_int_equal(tetcast_scene_create(fixture.context, body.volume, &scene), TETCAST_OK);
     TetcastTransferFunction *transfer;
-    assert_int_equal(tetcast_transfer_function_create_preset(fixture.context, volume, "viridis", 0, 1, &transfer),
-                     TETCAST_ERROR_ARGUMENT); /* no field yet */
-    assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
-    assert_int_equal(tetcast_transfer_function_create_preset(fixture.context, volume, "plaid", 0, 1, &transfer),
-                     TETCAST_ERROR_ARGUMENT);
+    assert_int_equal(tetcast_scene_create_preset(scene, "viridis", 0, 1, &transfer), TETCAST_ERROR_ARGUMENT);
+    assert_non_null(strstr(fixture.message, "with a field"));
+    assert_null(transfer);
+    assert_int_equal(tetcast_scene_set_field(scene, body.field), TETCAST_OK);
+    assert_int_equal(tetcast_scene_create_preset(scene, "plaid", 0, 1, &transfer), TETCAST_ERROR_ARGUMENT);
     assert_non_null(strstr(fixture.message, "viridis"));
+    assert_null(transfer);
     double range[2];
-    tetcast_field_range(field, range, NULL);
-    assert_int_equal(tetcast_transfer_function_create_preset(fixture.context, volume, "viridis", range[0], range[1], &transfer),
-                     TETCAST_OK);
+    tetcast_field_range(body.field, range, NULL);
+    assert_int_equal(tetcast_scene_create_preset(scene, "viridis", range[0], range[1], &transfer), TETCAST_OK);
+    tetcast_scene_destroy(&scene);
     double bounds[6];
     tetcast_mesh_bounds(mesh, bounds);
     const TetcastCamera camera = tetcast_camera_default(bounds, 1);
-    double *pixels = picture(fixture.context, volume, transfer, &camera, 16, 16, NULL);
+    double *pixels = picture(fixture.context, &body, transfer, &camera, 16, 16, NULL);
     double sum = 0, covered = 0;
     for (int p = 0; p < 256; ++p) {
       sum += pixels[4 * p + 3];
@@ -120,8 +122,7 @@ static void presets_fit_any_unit(void **state) {
       free(pixels);
     }
     tetcast_transfer_function_destroy(&transfer);
-    tetcast_field_destroy(&field);
-    tetcast_volume_destroy(&volume);
+    body_destroy(&body);
     tetcast_mesh_destroy(&mesh);
     cube_destroy(&cube);
   }

@@ -27,7 +27,7 @@ typedef struct Pair {
 } Pair;
 
 static void set_fields(Pair *pair, const TetcastField *field) {
-  for (int i = 0; i < 2; ++i) assert_int_equal(tetcast_volume_set_field(pair->volume[i], field), TETCAST_OK);
+  for (int i = 0; i < 2; ++i) assert_int_equal(tetcast_scene_set_field(pair->scene[i], field), TETCAST_OK);
 }
 
 /* Both pictures by every kernel, from outside and from within; returns the share of segments that were walked. */
@@ -57,7 +57,7 @@ static double compare(TetcastContext *context, Pair *pair, const TetcastTransfer
       assert_true(largest_difference(rgba[0], rgba[1], 4 * SIZE * SIZE) < 1e-13);
     }
   }
-  assert_int_equal(pair->scene[0]->shell.visible != NULL, left_out);
+  assert_int_equal(pair->scene[0]->prepared->shell.visible != NULL, left_out);
   for (int i = 0; i < 2; ++i) tetcast_frame_destroy(&frames[i]);
   return (double)segments[0] / (double)segments[1];
 }

@@ -1,3 +1,0 @@
-/* SPDX-License-Identifier: Apache-2.0 */
-#define PSI_LANES psi_avx512
-#include "psi_lanes.h"
