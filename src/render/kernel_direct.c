@@ -19,7 +19,7 @@ typedef struct TcDirect {
   double length, lost; /* of the path, and what rounding has taken from it (Kahan) */
   TcBeam *beams;       /* [groups] */
   double *near, *far;  /* [values] at the face before and at this one */
-  double *sums;        /* [3][groups]: radiance, optical depth, transmittance, over a pixel's samples */
+  double *sums;        /* [3][groups]: radiance, optical depth, transmittance, means over a pixel's samples */
   double memory[];
 } TcDirect;
 
@@ -58,8 +58,8 @@ static void add_groups(TcDirect *direct, double length) {
       else if (!transparent) m.depth = 0.5 * a + 0.5 * a1;
     }
     if (transparent) continue;
-    double radiance = 0; /* a quarter of it: lengths are below 4, so that no sum along a ray overflows */
-    if (emission >= 0) radiance = 0.25 * length * (near[emission] * m.m0 + far[emission] * m.m1);
+    double radiance = 0;
+    if (emission >= 0) radiance = length * (near[emission] * c->emission_scale * m.m0 + far[emission] * c->emission_scale * m.m1);
     if (isnan(radiance)) continue;
     tc_beam_add(&direct->beams[g], radiance, m.depth, m.transmittance);
   }
@@ -137,23 +137,18 @@ static bool cast(const TcShell *shell, const TcLine *line, TcWorker *worker) {
 /* Red, green, blue, alpha from the groups' radiances and the sum of their opacities. */
 static void color_of(const TcCoefficients *c, const double *radiance, double opacity, double rgba[4]) {
   double mean = 0;
-  for (int g = 0; g < c->groups; ++g) mean += radiance[g];
-  mean /= c->groups;
+  for (int g = 0; g < c->groups; ++g) mean += radiance[g] / c->groups; /* whose sum might overflow */
   for (int k = 0; k < 3; ++k) rgba[k] = c->groups == 3 ? radiance[k] : mean;
   rgba[3] = opacity;
 }
 
 static void store(const TcJob *job, int64_t x, int64_t y, TcDirect *direct, double opacity, double length) {
   const TcCoefficients *c = direct->coefficients;
-  const int samples = job->samples_x * job->samples_y, exponent = job->shell->volume->exponent;
+  const int exponent = job->shell->volume->exponent;
   double *radiance = direct->sums, *depth = radiance + c->groups, *transmittance = depth + c->groups, rgba[4];
-  for (int g = 0; g < c->groups; ++g) {
-    radiance[g] = ldexp(radiance[g] / samples, exponent + 2);
-    depth[g] /= samples;
-    transmittance[g] /= samples;
-  }
-  length = ldexp(length / samples, exponent);
-  color_of(c, radiance, opacity / samples, rgba);
+  for (int g = 0; g < c->groups; ++g) radiance[g] = ldexp(radiance[g], exponent + c->emission_exponent);
+  length = ldexp(length, exponent);
+  color_of(c, radiance, opacity, rgba);
   tc_frame_store(job->frame, x, y, rgba, 0);
   tc_frame_put(job->frame, TETCAST_CHANNEL_RADIANCE, x, y, radiance);
   tc_frame_put(job->frame, TETCAST_CHANNEL_OPTICAL_DEPTH, x, y, depth);
@@ -165,6 +160,7 @@ static bool render_pixel(const TcJob *job, int64_t x, int64_t y, TcWorker *worke
   TcDirect *direct = worker->direct;
   const TcCoefficients *c = direct->coefficients;
   const int distinct = c->extinction_count; /* groups whose transmittances are not one and the same */
+  const double samples = job->samples_x * job->samples_y;
   double opacity = 0, length = 0;
   memset(direct->sums, 0, 3 * (size_t)c->groups * sizeof *direct->sums);
   for (int i = 0; i < job->samples_x * job->samples_y; ++i) {
@@ -175,13 +171,13 @@ static bool render_pixel(const TcJob *job, int64_t x, int64_t y, TcWorker *worke
     for (int g = 0; g < c->groups; ++g) {
       TcBeam *beam = &direct->beams[g];
       tc_beam_end_block(beam);
-      direct->sums[g] += beam->radiance;
-      direct->sums[c->groups + g] += beam->depth;
-      direct->sums[2 * c->groups + g] += beam->transmittance;
+      direct->sums[g] += beam->radiance / samples; /* each by itself: the sum might overflow */
+      direct->sums[c->groups + g] += beam->depth / samples;
+      direct->sums[2 * c->groups + g] += beam->transmittance / samples;
       if (g < distinct) sum -= expm1(-beam->depth);
     }
-    if (distinct) opacity += sum / distinct;
-    length += direct->length;
+    if (distinct) opacity += sum / distinct / samples;
+    length += direct->length / samples;
   }
   store(job, x, y, direct, opacity, length);
   return true;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -69,6 +70,6 @@ TetcastStatus tc_preset_extinction(TetcastContext *context, const TetcastVolume 
     factor = exp(lower);
   }
   *extinction = ldexp(factor, -volume->exponent);
-  if (!isfinite(*extinction)) *extinction = 1e300;
+  if (!isfinite(*extinction)) *extinction = DBL_MAX;
   return TETCAST_OK;
 }

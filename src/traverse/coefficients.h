@@ -5,6 +5,7 @@
 
 #include <tetcast/scene.h>
 
+#include "optics/transfer.h"
 #include "traverse/walk.h"
 
 /* One row of values for each vertex, or for each cell: the fields of that association next to each other, float when all of them came as
@@ -22,10 +23,12 @@ typedef struct TcCoefficients {
   int groups, extinction_count, emission_count;
   int *slots;             /* [2 groups]: that of each group's extinction, then of its emission; −1: none */
   double scale[2];        /* extinction times both is that of the volume's unit of length */
+  int emission_exponent;  /* emission is counted in this power of two, near the largest: times what an opaque segment lets out, … */
+  double emission_scale;  /* … it does not underflow. Emission times this is in that unit */
 } TcCoefficients;
 
-/* Larger extinctions, in the volume's unit, count as this: a cell is shorter than 4, which leaves room for TC_LARGEST_DENSITY. */
-#define TC_LARGEST_EXTINCTION 0x1p1017
+/* Values of larger magnitude count as this: interpolation between them doesn't overflow. */
+#define TC_LARGEST_VALUE 0x1p1022
 
 TetcastStatus tc_coefficients_create(const TetcastVolume *volume, const TetcastCoefficientsDesc *desc, TcCoefficients **out);
 void tc_coefficients_destroy(TcCoefficients *coefficients);

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "mesh/order.h"
 #include "mesh/stage.h"
+#include "optics/transfer.h"
 #include "traverse/rayspace.h"
 
 /* Resident: 25 bytes per cell (20, its source, and its share of a cluster), 20 or 36 per vertex (the record and its source), 16 per shell face and what Embree
@@ -199,8 +200,7 @@ void tc_volume_destroy(TetcastVolume *volume) {
 /* The value as it is stored. */
 static double value_of(const Take *take, int64_t i) {
   const double s = tc_field_at(take->field, i);
-  if (!(fabs(s) <= TC_LARGEST_VALUE)) return (double)NAN;
-  return s * take->scale[0];
+  return isfinite(s) ? s * take->scale[0] : (double)NAN;
 }
 
 static bool take_point_values(void *data, int64_t begin, int64_t end, int worker) {
@@ -269,7 +269,8 @@ TetcastStatus tc_volume_set_field(TetcastVolume *volume, const TetcastField *fie
   int64_t nonfinite;
   tc_field_range(field, range, &nonfinite);
   const double largest = fmax(fabs(range[0]), fabs(range[1]));
-  const int exponent = largest > 0 && largest < ldexp(1, -TC_TINY_FIELD) ? -TC_TINY_FIELD : 0;
+  const bool tiny = largest > 0 && largest < ldexp(1, -TC_TINY_FIELD);
+  const int exponent = tiny ? -TC_TINY_FIELD : largest > TC_LARGEST_SCALAR ? TC_HUGE_FIELD : 0;
   Take take = {.volume = volume, .field = field, .scale = {ldexp(1, -exponent)}};
   const TetcastStatus status = point ? set_point_field(volume, &take) : set_cell_field(volume, &take);
   if (status) return status;

@@ -42,15 +42,13 @@ struct TetcastVolume {
   int64_t field_number; /* changes with each field */
   TetcastAssociation association;
   double *cell_values; /* [cell_count] with a cell field; not finite: transparent */
-  int value_exponent;  /* values are stored times 2^−value_exponent */
+  int value_exponent;  /* values are stored times 2^−value_exponent: −TC_TINY_FIELD, 0 or TC_HUGE_FIELD */
   TetcastVolumeInfo info;
 };
 
-/* Values of larger magnitude count as infinite: differences of two of them could overflow. */
-#define TC_LARGEST_VALUE 0x1p1022
-
-/* A field whose values are all below 2^−TC_TINY_FIELD is stored times 2^TC_TINY_FIELD, so that interpolation does not underflow. */
-#define TC_TINY_FIELD 500
+/* A field whose values are all below 2^−TC_TINY_FIELD is stored times 2^TC_TINY_FIELD, so that interpolation does not underflow; one with a value
+ * above TC_LARGEST_SCALAR is stored times 2^−TC_HUGE_FIELD, so that it does not overflow. */
+enum { TC_TINY_FIELD = 500, TC_HUGE_FIELD = 64 };
 
 TetcastStatus tc_volume_create(TetcastContext *context, const TetcastMesh *mesh, const TetcastVolumeDesc *desc,
                                TetcastVolume **volume);
