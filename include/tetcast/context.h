@@ -20,7 +20,7 @@ extern "C" {
  * - Floating point: nothing. It computes in the default environment (round to nearest, no traps, denormal numbers count) whatever that of the
  *   calling thread is, which comes back as it was, flags included.
  * - Stack: less than 32 KiB of the calling thread's. Long work is done on threads of the library's own, which live no longer than the call and take no
- *   signals, while the calling one waits. Where the system lets no thread start, the calling one does the work alone; that takes up to 512 KiB.
+ *   signals, while the calling one waits. Where the system lets no thread start, the calling one does the work alone; that takes up to 256 KiB.
  * - Threads: as many as there are. What can't be started is done without, and changes no bit of a result. */
 typedef struct TetcastContext TetcastContext;
 

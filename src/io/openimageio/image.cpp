@@ -13,6 +13,7 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include "io/floating.hpp"
 #include "output.hpp"
 
 using OIIO::ImageOutput;
@@ -348,6 +349,7 @@ void write_picture(TetcastContext *context, const char *path, const Pixels &pixe
 
 TetcastStatus guarded(TetcastContext *context, const char *path, const Pixels &pixels, const TetcastImageDesc *given,
                       bool publish) {
+  const FloatingPoint guard;
   const TetcastImageDesc desc = given ? *given : tetcast_image_desc_default();
   if (desc.cookie != desc_cookie)
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
