@@ -9,6 +9,8 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <system_error>
+#include <thread>
 #include <vector>
 
 #include <OpenImageIO/imageio.h>
@@ -121,6 +123,8 @@ const Format &find_format(TetcastContext *context, const char *path, std::unique
   for (const Format &format : formats)
     if (output && !std::strcmp(output->format_name(), format.name))
       return format;
+  if (extension == "exr") // OpenEXR starts threads before it knows what for
+    std::thread([] {}).join();
   fail(context, TETCAST_ERROR_ARGUMENT, path,
        "images of format '." + extension + "' are not supported; .png .exr .tif .jpg are");
 }
@@ -370,6 +374,10 @@ TetcastStatus guarded(TetcastContext *context, const char *path, const Pixels &p
     return failure.status;
   } catch (const std::bad_alloc &) {
     return tetcast_context_error(context, TETCAST_ERROR_MEMORY, "cannot write image '%s': out of memory", path);
+  } catch (const std::system_error &error) {
+    const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
+    return tetcast_context_error(context, TETCAST_ERROR_IO, "cannot write image '%s': %s%s", path, error.what(),
+                                 no_thread ? ": OpenImageIO needs a thread of its own for this format; .png and .jpg don't" : "");
   } catch (const std::exception &error) {
     return tetcast_context_error(context, TETCAST_ERROR_IO, "cannot write image '%s': %s", path, error.what());
   } catch (...) {
