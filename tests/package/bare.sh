@@ -7,6 +7,12 @@
 # there is used as it is. What is tested is a clone of what is committed here, anew each time. With COMMANDs, "build" or "test" or both, only these.
 # MIRROR, in the environment, is where packages come from.
 set -eu
+[ "$(id -u)" -eq 0 ] || {
+  echo 'bare.sh: debootstrap and chroot need root' >&2
+  exit 1
+}
+# What is mounted is seen from here alone, and gone at the end.
+[ -n "${TETCAST_BARE-}" ] || TETCAST_BARE=yes exec unshare --mount --propagation private sh "$0" "$@"
 release=${1:?bare.sh: which release? bookworm or trixie}
 root=${2:-/var/tmp/tetcast-$release}
 shift
@@ -15,29 +21,15 @@ shift
 source=$(cd "$(dirname "$0")/../.." && pwd)
 mirror=${MIRROR:-http://deb.debian.org/debian}
 
-[ "$(id -u)" -eq 0 ] || {
-  echo 'bare.sh: debootstrap and chroot need root' >&2
-  exit 1
-}
 if [ ! -e "$root/etc/debian_version" ]; then
   mkdir -p "$root"
   debootstrap --variant=minbase "$release" "$root" "$mirror"
 fi
 
 # The system sees the processes and devices of this one, and a name server.
-mounted=''
-leave() {
-  for place in $mounted; do umount "$place" || :; done
-}
-trap leave EXIT
-for place in proc dev dev/shm; do
-  mkdir -p "$root/$place"
-  case $place in
-    proc) mount -t proc proc "$root/proc" ;;
-    *) mount --bind "/$place" "$root/$place" ;;
-  esac
-  mounted="$root/$place $mounted"
-done
+mkdir -p "$root/proc" "$root/dev"
+mount -t proc proc "$root/proc"
+mount --rbind /dev "$root/dev"
 cp -L /etc/resolv.conf "$root/etc/resolv.conf" 2>/dev/null || :
 cp -L /etc/hosts "$root/etc/hosts" 2>/dev/null || :
 

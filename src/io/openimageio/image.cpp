@@ -109,10 +109,14 @@ struct Format {
   int64_t limit; // pixels a side
 };
 
-constexpr Format formats[] = {
-    {"png", TypeDesc::UINT8, 1000000}, {"openexr", TypeDesc::HALF, 1 << 20}, {"tiff", TypeDesc::FLOAT, 1 << 20},
-    {"jpeg", TypeDesc::UINT8, 65500},  {"bmp", TypeDesc::UINT8, 1 << 20},    {"targa", TypeDesc::UINT8, 65535},
-    {"webp", TypeDesc::UINT8, 16383},  {"pnm", TypeDesc::UINT8, 1 << 20},    {"hdr", TypeDesc::FLOAT, 1 << 20}};
+// From 2.5 on, OpenImageIO itself has a limit for PNG, BMP and PNM, below what the formats or libpng have.
+constexpr int64_t limited(int64_t limit) { return OIIO_VERSION >= OIIO_MAKE_VERSION(2, 5, 0) ? 65535 : limit; }
+
+constexpr Format formats[] = {{"png", TypeDesc::UINT8, limited(1000000)}, {"openexr", TypeDesc::HALF, 1 << 20},
+                              {"tiff", TypeDesc::FLOAT, 1 << 20},         {"jpeg", TypeDesc::UINT8, 65500},
+                              {"bmp", TypeDesc::UINT8, limited(1 << 20)}, {"targa", TypeDesc::UINT8, 65535},
+                              {"webp", TypeDesc::UINT8, 16383},           {"pnm", TypeDesc::UINT8, limited(1 << 20)},
+                              {"hdr", TypeDesc::FLOAT, 1 << 20}};
 
 const Format &find_format(TetcastContext *context, const char *path, std::unique_ptr<ImageOutput> &output) {
   const std::string extension = extension_of(path);
