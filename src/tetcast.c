@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The public boundary: checks arguments, guards the host's floating-point environment, and hands what takes long to a thread of the library's own
- * (call.h); nothing else. What computes nothing, and calls nothing, needs no guard. */
+/* The public boundary: checks arguments, guards the host's floating-point environment, and hands what takes long to a
+ * thread of the library's own (call.h); nothing else. What computes nothing, and calls nothing, needs no guard. */
 #include <tetcast/tetcast.h>
 
 #include <inttypes.h>
@@ -371,7 +371,9 @@ static TetcastStatus preset_create(void *data) {
   const PresetCreate *call = data;
   double extinction;
   const TetcastStatus status = tc_preset_extinction(call->context, call->volume, call->low, call->high, &extinction);
-  return status ? status : tc_transfer_create_preset(call->context, call->name, call->low, call->high, extinction, call->transfer_function);
+  return status ? status
+                : tc_transfer_create_preset(call->context, call->name, call->low, call->high, extinction,
+                                            call->transfer_function);
 }
 
 TetcastStatus tetcast_transfer_function_create_preset(TetcastContext *context, const TetcastVolume *volume, const char *name,

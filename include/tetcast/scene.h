@@ -36,7 +36,8 @@ TETCAST_API TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scen
  * Without extinction nothing is absorbed; without emission, as in radiography, there is no radiance. What isn't given isn't computed. */
 typedef struct TetcastCoefficientsDesc {
   uint32_t cookie;
-  const TetcastField *const *extinction; /* [extinction_count], one scalar each: ≥ 0; above 2^999 / largest coordinate: as that */
+  const TetcastField *const
+      *extinction; /* [extinction_count], one scalar each: ≥ 0; above 2^999 / largest coordinate: as that */
   const TetcastField *const *emission;   /* [emission_count]; may be negative: what comes out is linear in it */
   int extinction_count, emission_count;  /* 0: none; 1: the same for all groups; else the number of groups, to TETCAST_MAX_GROUPS */
   const char *extinction_name, *emission_name; /* for messages; NULL: "extinction", "emission" */

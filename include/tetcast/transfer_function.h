@@ -41,16 +41,17 @@ typedef struct TetcastTransferFunctionDesc {
 
 TETCAST_API TetcastTransferFunctionDesc tetcast_transfer_function_desc_default(void);
 
-/* All arrays are copied. Unsorted, negative or non-finite entries are TETCAST_ERROR_ARGUMENT; the message names the knot. Any finite entry will do:
- * where it is drawn, an extinction above 2^999 (5e300) / the mesh's largest coordinate counts as that, which nothing can be seen through, and a
- * colour above 2^500 (3e150) as that. */
+/* All arrays are copied. Unsorted, negative or non-finite entries are TETCAST_ERROR_ARGUMENT; the message names the
+ * knot. Any finite entry will do: where it is drawn, an extinction above 2^999 (5e300) / the mesh's largest coordinate
+ * counts as that, which nothing can be seen through, and a colour above 2^500 (3e150) as that. */
 TETCAST_API TetcastStatus tetcast_transfer_function_create(TetcastContext *context, const TetcastTransferFunctionDesc *desc,
                                                            TetcastTransferFunction **transfer_function);
 
-/* A named colour map over [low, high] (low ≤ high) with an extinction that rises linearly from 0 at `low`, scaled so that
- * rays that meet the volume are on average about half opaque, whatever the unit of length and however the field's values are
- * distributed; only where the extinction for that is above the largest double, in a mesh smaller than some 1e-308, it is that. The volume must have a field. An unknown name is TETCAST_ERROR_ARGUMENT; the
- * message lists the names. */
+/* A named colour map over [low, high] (low ≤ high) with an extinction that rises linearly from 0 at `low`, scaled so
+ * that rays that meet the volume are on average about half opaque, whatever the unit of length and however the field's
+ * values are distributed; only where the extinction for that is above the largest double, in a mesh smaller than some
+ * 1e-308, it is that. The volume must have a field. An unknown name is TETCAST_ERROR_ARGUMENT; the message lists the
+ * names. */
 TETCAST_API TetcastStatus tetcast_transfer_function_create_preset(TetcastContext *context, const TetcastVolume *volume,
                                                                   const char *name, double low, double high,
                                                                   TetcastTransferFunction **transfer_function);

@@ -32,14 +32,14 @@ void tc_message_v(TetcastContext *context, TetcastSeverity severity, const char 
 /* Returns `status`. */
 TetcastStatus tc_error(TetcastContext *context, TetcastStatus status, const char *format, ...)
 #if defined(__GNUC__)
-  __attribute__((format(printf, 3, 4)))
+    __attribute__((format(printf, 3, 4)))
 #endif
-  ;
+    ;
 void tc_warning(TetcastContext *context, const char *format, ...)
 #if defined(__GNUC__)
-  __attribute__((format(printf, 2, 3)))
+    __attribute__((format(printf, 2, 3)))
 #endif
-  ;
+    ;
 
 /* Memory for `count` things of `size` bytes, aligned to 64, not cleared; NULL when there is none (or the product
  * overflows). At least one byte is allocated, so that NULL always means failure. */

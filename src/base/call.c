@@ -36,8 +36,12 @@ static _Thread_local struct {
   bool alone;
 } here;
 
-TcCall *tc_call_here(void) { return here.call; }
-bool tc_call_alone(void) { return here.alone; }
+TcCall *tc_call_here(void) {
+  return here.call;
+}
+bool tc_call_alone(void) {
+  return here.alone;
+}
 
 void tc_enter(TcEntry *entry) {
   tc_floating_begin(&entry->host);
@@ -55,10 +59,14 @@ void tc_leave(TcEntry *entry) {
 /* On the host's thread, in its own environment, to which it may do what it likes. */
 static void serve(Request *request) {
   TcEntry *entry = here.entry;
-  if (entry) tc_floating_end(&entry->host);
-  if (request->progress) request->go_on = request->progress->function(request->progress->user, request->fraction);
-  else request->context->message(request->context->message_user, request->severity, request->text);
-  if (entry) tc_floating_begin(&entry->host);
+  if (entry)
+    tc_floating_end(&entry->host);
+  if (request->progress)
+    request->go_on = request->progress->function(request->progress->user, request->fraction);
+  else
+    request->context->message(request->context->message_user, request->severity, request->text);
+  if (entry)
+    tc_floating_begin(&entry->host);
 }
 
 static void ask(Request *request) {
@@ -68,21 +76,25 @@ static void ask(Request *request) {
     return;
   }
   pthread_mutex_lock(&call->mutex);
-  while (call->request) pthread_cond_wait(&call->answered, &call->mutex);
+  while (call->request)
+    pthread_cond_wait(&call->answered, &call->mutex);
   call->request = request;
   pthread_cond_signal(&call->asked);
-  while (call->request == request) pthread_cond_wait(&call->answered, &call->mutex);
+  while (call->request == request)
+    pthread_cond_wait(&call->answered, &call->mutex);
   pthread_mutex_unlock(&call->mutex);
 }
 
 void tc_call_message(TetcastContext *context, TetcastSeverity severity, const char *text) {
-  if (context->message) ask(&(Request){.context = context, .severity = severity, .text = text});
+  if (context->message)
+    ask(&(Request){.context = context, .severity = severity, .text = text});
 }
 
 /* Each time costs two changes of thread: a thousand times a call is often enough. */
 static bool report(void *user, double fraction) {
   TcCall *call = user;
-  if (fraction < call->reported + 0.001) return true;
+  if (fraction < call->reported + 0.001)
+    return true;
   call->reported = fraction;
   Request request = {.progress = &call->progress, .fraction = fraction};
   ask(&request);
@@ -103,12 +115,14 @@ static void *thread_main(void *argument) {
 bool tc_thread_start(TcThread *thread, TcThreadFunction *function, void *data, TcCall *call) {
   *thread = (TcThread){.function = function, .data = data, .call = call};
   pthread_attr_t attributes;
-  if (pthread_attr_init(&attributes) != 0) return false;
+  if (pthread_attr_init(&attributes) != 0)
+    return false;
   pthread_attr_setstacksize(&attributes, STACK);
   sigset_t others, former;
   sigfillset(&others);
   static const int own[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGABRT, SIGSYS};
-  for (size_t i = 0; i < sizeof own / sizeof *own; ++i) sigdelset(&others, own[i]);
+  for (size_t i = 0; i < sizeof own / sizeof *own; ++i)
+    sigdelset(&others, own[i]);
   pthread_sigmask(SIG_BLOCK, &others, &former);
   const bool started = pthread_create(&thread->thread, &attributes, thread_main, thread) == 0;
   pthread_sigmask(SIG_SETMASK, &former, NULL);
@@ -116,7 +130,9 @@ bool tc_thread_start(TcThread *thread, TcThreadFunction *function, void *data, T
   return started;
 }
 
-void tc_thread_join(TcThread *thread) { pthread_join(thread->thread, NULL); }
+void tc_thread_join(TcThread *thread) {
+  pthread_join(thread->thread, NULL);
+}
 
 /* ── a call ── */
 
@@ -147,7 +163,11 @@ static void attend(TcCall *call) {
 }
 
 TetcastStatus tc_call(TcBody *body, void *data, TetcastProgress *progress) {
-  TcCall call = {.body = body, .data = data, .reported = -1, .mutex = PTHREAD_MUTEX_INITIALIZER, .asked = PTHREAD_COND_INITIALIZER,
+  TcCall call = {.body = body,
+                 .data = data,
+                 .reported = -1,
+                 .mutex = PTHREAD_MUTEX_INITIALIZER,
+                 .asked = PTHREAD_COND_INITIALIZER,
                  .answered = PTHREAD_COND_INITIALIZER};
   if (progress && progress->function) {
     call.progress = *progress;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The floating-point environment: how results are rounded, which exceptions are trapped, whether denormal numbers count, and the flags. A host may have
- * set any of it as it likes; the library computes in the default one and gives the host's back as it was. */
+/* The floating-point environment: how results are rounded, which exceptions are trapped, whether denormal numbers
+ * count, and the flags. A host may have set any of it as it likes; the library computes in the default one and gives
+ * the host's back as it was. */
 #ifndef TC_BASE_FLOATING_H
 #define TC_BASE_FLOATING_H
 
@@ -11,8 +12,9 @@
 
 #include <xmmintrin.h>
 
-/* Double and float are computed with by SSE, whose control and flags are one register. What little there is of the x87 is looked at without changing
- * anything in the ordinary case: fegetenv() and fesetenv() take fifteen times as long, too long for what returns one number of many. */
+/* Double and float are computed with by SSE, whose control and flags are one register. What little there is of the x87
+ * is looked at without changing anything in the ordinary case: fegetenv() and fesetenv() take fifteen times as long,
+ * too long for what returns one number of many. */
 typedef struct TcFloating {
   uint32_t mxcsr;
   uint16_t control, status; /* x87 */
@@ -26,7 +28,8 @@ static inline void tc_floating_begin(TcFloating *floating) {
   __asm__ volatile("fnstcw %0" : "=m"(floating->control));
   __asm__ volatile("fnstsw %0" : "=m"(floating->status));
   _mm_setcsr(TC_DEFAULT_MXCSR);
-  if (floating->control == TC_DEFAULT_X87) return;
+  if (floating->control == TC_DEFAULT_X87)
+    return;
   const uint16_t control = TC_DEFAULT_X87;
   __asm__ volatile("fldcw %0" : : "m"(control));
 }
@@ -57,7 +60,9 @@ static inline void tc_floating_begin(TcFloating *floating) {
   fesetenv(FE_DFL_ENV);
 }
 
-static inline void tc_floating_end(const TcFloating *floating) { fesetenv(&floating->environment); }
+static inline void tc_floating_end(const TcFloating *floating) {
+  fesetenv(&floating->environment);
+}
 
 #endif
 

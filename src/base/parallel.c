@@ -53,11 +53,13 @@ TetcastStatus tc_parallel_for(TetcastContext *context, int64_t count, int64_t gr
   int started = 1;
   while (workers && started < threads) {
     workers[started] = (Worker){.loop = &loop, .index = started};
-    if (!tc_thread_start(&workers[started].thread, work_of_thread, &workers[started], tc_call_here())) break;
+    if (!tc_thread_start(&workers[started].thread, work_of_thread, &workers[started], tc_call_here()))
+      break;
     ++started;
   }
   work(&loop, 0);
-  for (int i = 1; i < started; ++i) tc_thread_join(&workers[i].thread);
+  for (int i = 1; i < started; ++i)
+    tc_thread_join(&workers[i].thread);
   tc_release(context, workers);
   return atomic_load(&loop.stop) ? TETCAST_ERROR_CANCELLED : TETCAST_OK;
 }

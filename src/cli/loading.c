@@ -11,9 +11,10 @@
 #include <string.h>
 #include <unistd.h>
 
-/* OpenImageIO brings OpenVDB, and that a logger (log4cplus) which starts threads for messages to come while it is loaded. Where the system lets no
- * further thread start it ends the process, though nothing of it is ever used. So while a library is loaded, threads that can't be started are
- * said to have been; they would only have waited for work. At its end such a process leaves at once: the logger would wait for them. */
+/* OpenImageIO brings OpenVDB, and that a logger (log4cplus) which starts threads for messages to come while it is
+ * loaded. Where the system lets no further thread start it ends the process, though nothing of it is ever used. So
+ * while a library is loaded, threads that can't be started are said to have been; they would only have waited for work.
+ * At its end such a process leaves at once: the logger would wait for them. */
 static _Thread_local bool loading;
 static atomic_bool pretended;
 

@@ -5,8 +5,9 @@
 
 #include <cfenv>
 
-// While it lives, the default environment is set: results don't depend on the host's rounding, and no exception of VTK, TetGen or OpenImageIO is
-// trapped. Then the host's is as it was, flags included. The first thing in what a public function does.
+// While it lives, the default environment is set: results don't depend on the host's rounding, and no exception of VTK,
+// TetGen or OpenImageIO is trapped. Then the host's is as it was, flags included. The first thing in what a public
+// function does.
 class FloatingPoint {
 public:
   FloatingPoint() {

@@ -42,7 +42,8 @@ static TetcastStatus check_knots(TetcastContext *context, const Knots *knots, co
 static void interpolate(const Knots *knots, int64_t i, double x, double *values) {
   const double *a = knots->data + i * knots->width, *b = a + knots->width;
   const double part = isfinite(b[0] - a[0]) ? 1 : 0.5; /* halves of differences that are too large */
-  const double whole = part * b[0] - part * a[0], w = (part * x - part * a[0]) / whole, v = (part * b[0] - part * x) / whole;
+  const double whole = part * b[0] - part * a[0], w = (part * x - part * a[0]) / whole,
+               v = (part * b[0] - part * x) / whole;
   for (int k = 1; k < knots->width; ++k) values[k - 1] = v * a[k] + w * b[k];
 }
 
@@ -86,7 +87,8 @@ static int64_t merge_knots(const Knots *a, const Knots *b, double limit, int exp
     const double next = fmax(-limit, fmin(x <= y ? x : y, limit));
     if (x <= y) ++i;
     else ++j;
-    if (n == 0 || ldexp(merged[n - 1], -exponent) != ldexp(next, -exponent)) ++n;
+    if (n == 0 || ldexp(merged[n - 1], -exponent) != ldexp(next, -exponent))
+      ++n;
     merged[n - 1] = next;
   }
   return n;
@@ -154,11 +156,13 @@ static void look_at_pieces(TetcastTransferFunction *transfer) {
 /* In other units, and not above what is computed with. */
 static void scale_optics(TcOptics *optics, int length_exponent) {
   optics->extinction = fmin(ldexp(optics->extinction, length_exponent), TC_LARGEST_EXTINCTION);
-  for (int k = 0; k < 3; ++k) optics->color[k] = fmin(optics->color[k], TC_LARGEST_COLOR);
+  for (int k = 0; k < 3; ++k)
+    optics->color[k] = fmin(optics->color[k], TC_LARGEST_COLOR);
 }
 
-/* The pieces, scalars times 2^−value_exponent and lengths times 2^−length_exponent: powers of two, no bit changes. No scalar is beyond
- * ±TC_LARGEST_SCALAR in these units: there, knots farther away are replaced by what holds at that limit, so that their distances don't overflow. */
+/* The pieces, scalars times 2^−value_exponent and lengths times 2^−length_exponent: powers of two, no bit changes. No
+ * scalar is beyond ±TC_LARGEST_SCALAR in these units: there, knots farther away are replaced by what holds at that
+ * limit, so that their distances don't overflow. */
 static void make_pieces(TetcastTransferFunction *transfer, int value_exponent, int length_exponent) {
   const Knots color = {transfer->color, transfer->color_count, 4};
   const Knots extinction = {transfer->extinction, transfer->extinction_count, 2};
@@ -174,7 +178,8 @@ static void make_pieces(TetcastTransferFunction *transfer, int value_exponent, i
     scale_optics(&piece->at_low, length_exponent);
     scale_optics(&piece->at_high, length_exponent);
   }
-  for (int64_t i = 0; i < n; ++i) x[i] = ldexp(x[i], -value_exponent);
+  for (int64_t i = 0; i < n; ++i)
+    x[i] = ldexp(x[i], -value_exponent);
   for (int64_t i = 0; i <= n; ++i) {
     TcPiece *piece = &transfer->piece[i];
     piece->low = i > 0 ? x[i - 1] : -INFINITY;
@@ -221,8 +226,8 @@ static TetcastStatus check_desc(TetcastContext *context, const TetcastTransferFu
   return status;
 }
 
-static TetcastStatus create(TetcastContext *context, const TetcastTransferFunctionDesc *desc, int value_exponent, int length_exponent,
-                            TetcastTransferFunction **out) {
+static TetcastStatus create(TetcastContext *context, const TetcastTransferFunctionDesc *desc, int value_exponent,
+                            int length_exponent, TetcastTransferFunction **out) {
   const TetcastStatus status = check_desc(context, desc);
   if (status) return status;
   const int64_t count = desc->extinction ? desc->extinction_count : desc->opacity_count;
@@ -253,7 +258,8 @@ static TetcastStatus create(TetcastContext *context, const TetcastTransferFuncti
   return TETCAST_OK;
 }
 
-TetcastStatus tc_transfer_create(TetcastContext *context, const TetcastTransferFunctionDesc *desc, TetcastTransferFunction **out) {
+TetcastStatus tc_transfer_create(TetcastContext *context, const TetcastTransferFunctionDesc *desc,
+                                 TetcastTransferFunction **out) {
   return create(context, desc, 0, 0, out);
 }
 
@@ -266,7 +272,8 @@ TetcastStatus tc_transfer_rescale(TetcastContext *context, const TetcastTransfer
   return create(context, &desc, value_exponent, length_exponent, out);
 }
 
-TetcastStatus tc_transfer_copy(TetcastContext *context, const TetcastTransferFunction *source, TetcastTransferFunction **out) {
+TetcastStatus tc_transfer_copy(TetcastContext *context, const TetcastTransferFunction *source,
+                               TetcastTransferFunction **out) {
   return tc_transfer_rescale(context, source, 0, 0, out);
 }
 

@@ -69,7 +69,8 @@ TetcastStatus tc_view_create(TetcastContext *context, const TetcastCamera *camer
   cross(view->right, view->forward, view->up);
   const double half = view->orthographic ? ldexp(0.5 * camera->height, -volume->exponent) : tan(0.5 * camera->fovy * DEGREE);
   if (!(half * aspect < TOO_FAR && half < TOO_FAR)) {
-    return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: a height of %g is too large for the mesh", camera->height);
+    return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: a height of %g is too large for the mesh",
+                    camera->height);
   }
   for (int k = 0; k < 3; ++k) {
     view->right[k] *= half * aspect;

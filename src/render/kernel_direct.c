@@ -59,7 +59,8 @@ static void add_groups(TcDirect *direct, double length) {
     }
     if (transparent) continue;
     double radiance = 0;
-    if (emission >= 0) radiance = length * (near[emission] * c->emission_scale * m.m0 + far[emission] * c->emission_scale * m.m1);
+    if (emission >= 0)
+      radiance = length * (near[emission] * c->emission_scale * m.m0 + far[emission] * c->emission_scale * m.m1);
     if (isnan(radiance)) continue;
     tc_beam_add(&direct->beams[g], radiance, m.depth, m.transmittance);
   }
@@ -137,7 +138,8 @@ static bool cast(const TcShell *shell, const TcLine *line, TcWorker *worker) {
 /* Red, green, blue, alpha from the groups' radiances and the sum of their opacities. */
 static void color_of(const TcCoefficients *c, const double *radiance, double opacity, double rgba[4]) {
   double mean = 0;
-  for (int g = 0; g < c->groups; ++g) mean += radiance[g] / c->groups; /* whose sum might overflow */
+  for (int g = 0; g < c->groups; ++g)
+    mean += radiance[g] / c->groups; /* whose sum might overflow */
   for (int k = 0; k < 3; ++k) rgba[k] = c->groups == 3 ? radiance[k] : mean;
   rgba[3] = opacity;
 }
@@ -146,7 +148,8 @@ static void store(const TcJob *job, int64_t x, int64_t y, TcDirect *direct, doub
   const TcCoefficients *c = direct->coefficients;
   const int exponent = job->shell->volume->exponent;
   double *radiance = direct->sums, *depth = radiance + c->groups, *transmittance = depth + c->groups, rgba[4];
-  for (int g = 0; g < c->groups; ++g) radiance[g] = ldexp(radiance[g], exponent + c->emission_exponent);
+  for (int g = 0; g < c->groups; ++g)
+    radiance[g] = ldexp(radiance[g], exponent + c->emission_exponent);
   length = ldexp(length, exponent);
   color_of(c, radiance, opacity, rgba);
   tc_frame_store(job->frame, x, y, rgba, 0);
@@ -176,7 +179,8 @@ static bool render_pixel(const TcJob *job, int64_t x, int64_t y, TcWorker *worke
       direct->sums[2 * c->groups + g] += beam->transmittance / samples;
       if (g < distinct) sum -= expm1(-beam->depth);
     }
-    if (distinct) opacity += sum / distinct / samples;
+    if (distinct)
+      opacity += sum / distinct / samples;
     length += direct->length / samples;
   }
   store(job, x, y, direct, opacity, length);

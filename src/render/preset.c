@@ -70,6 +70,7 @@ TetcastStatus tc_preset_extinction(TetcastContext *context, const TetcastVolume 
     factor = exp(lower);
   }
   *extinction = ldexp(factor, -volume->exponent);
-  if (!isfinite(*extinction)) *extinction = DBL_MAX;
+  if (!isfinite(*extinction))
+    *extinction = DBL_MAX;
   return TETCAST_OK;
 }

@@ -110,7 +110,8 @@ static int emission_exponent(const List *emission) {
     largest = fmax(largest, fmax(fabs(range[0]), fabs(range[1])));
   }
   int exponent = 0;
-  if (largest > 0) frexp(largest, &exponent);
+  if (largest > 0)
+    frexp(largest, &exponent);
   return exponent < -1000 ? -1000 : exponent; /* whose inverse power is a number */
 }
 
@@ -123,10 +124,14 @@ TetcastStatus tc_coefficients_create(const TetcastVolume *volume, const TetcastC
   TcCoefficients *c;
   if (!tc_allocate_array(volume->context, (void **)&c, 1, sizeof *c, "coefficients")) return TETCAST_ERROR_MEMORY;
   const int half = volume->exponent / 2, brightest = emission_exponent(&lists[1]);
-  *c = (TcCoefficients){.context = volume->context, .scale = {ldexp(1, half), ldexp(1, volume->exponent - half)},
-                        .emission_exponent = brightest, .emission_scale = ldexp(1, -brightest),
-                        .extinction_count = desc->extinction_count, .emission_count = desc->emission_count,
-                        .groups = desc->extinction_count > desc->emission_count ? desc->extinction_count : desc->emission_count};
+  *c = (TcCoefficients){.context = volume->context,
+                        .scale = {ldexp(1, half), ldexp(1, volume->exponent - half)},
+                        .emission_exponent = brightest,
+                        .emission_scale = ldexp(1, -brightest),
+                        .extinction_count = desc->extinction_count,
+                        .emission_count = desc->emission_count,
+                        .groups = desc->extinction_count > desc->emission_count ? desc->extinction_count
+                                                                                : desc->emission_count};
   status = take_all(volume, lists, c);
   if (status) {
     tc_coefficients_destroy(c);

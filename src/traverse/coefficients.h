@@ -23,7 +23,8 @@ typedef struct TcCoefficients {
   int groups, extinction_count, emission_count;
   int *slots;             /* [2 groups]: that of each group's extinction, then of its emission; −1: none */
   double scale[2];        /* extinction times both is that of the volume's unit of length */
-  int emission_exponent;  /* emission is counted in this power of two, near the largest: times what an opaque segment lets out, … */
+  int emission_exponent;  /* emission is counted in this power of two, near the largest: times what an opaque segment
+                             lets out, … */
   double emission_scale;  /* … it does not underflow. Emission times this is in that unit */
 } TcCoefficients;
 

@@ -111,18 +111,22 @@ static bool memory_monitor(void *user, ssize_t bytes, bool post) {
 
 /* ── building ── */
 
-/* Reading an error forgets it. What Embree notes it in, of each thread, is made at the first reading: not only when memory is short, where
- * Embree would end the process. */
-static enum RTCError take_error(RTCDevice device) { return rtcGetDeviceError(device); }
+/* Reading an error forgets it. What Embree notes it in, of each thread, is made at the first reading: not only when
+ * memory is short, where Embree would end the process. */
+static enum RTCError take_error(RTCDevice device) {
+  return rtcGetDeviceError(device);
+}
 
 static TetcastStatus report(TetcastContext *context, enum RTCError error) {
   if (error == RTC_ERROR_NONE) return TETCAST_OK;
-  if (error == RTC_ERROR_OUT_OF_MEMORY) return tc_error(context, TETCAST_ERROR_MEMORY, "out of memory in Embree");
+  if (error == RTC_ERROR_OUT_OF_MEMORY)
+    return tc_error(context, TETCAST_ERROR_MEMORY, "out of memory in Embree");
   return tc_error(context, TETCAST_ERROR_EMBREE, "Embree reports error %d", (int)error);
 }
 
-/* Where memory is short, it is refused here rather than beneath Embree and TBB, which can't bear that at every place: what building takes is tried
- * first. 16 MiB for what the two make once; a primitive takes 72 bytes at the most, as measured. */
+/* Where memory is short, it is refused here rather than beneath Embree and TBB, which can't bear that at every place:
+ * what building takes is tried first. 16 MiB for what the two make once; a primitive takes 72 bytes at the most, as
+ * measured. */
 static bool memory_suffices(int64_t count) {
   void *reserve = malloc(((size_t)16 << 20) + 96 * (size_t)count);
   free(reserve);
@@ -132,11 +136,13 @@ static bool memory_suffices(int64_t count) {
 static TetcastStatus make_scene(TcEmbree *embree) {
   embree->scene = rtcNewScene(embree->device);
   TetcastStatus status = report(embree->context, take_error(embree->device));
-  if (status) return status;
+  if (status)
+    return status;
   rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST);
   RTCGeometry geometry = rtcNewGeometry(embree->device, RTC_GEOMETRY_TYPE_USER);
   status = report(embree->context, take_error(embree->device));
-  if (status) return status;
+  if (status)
+    return status;
   rtcSetGeometryUserPrimitiveCount(geometry, (embree->count + PAIR - 1) / PAIR);
   rtcSetGeometryUserData(geometry, embree);
   rtcSetGeometryBoundsFunction(geometry, bounds_function, NULL);
@@ -147,12 +153,15 @@ static TetcastStatus make_scene(TcEmbree *embree) {
   return report(embree->context, take_error(embree->device));
 }
 
-/* Threads that may build: no more than TBB counts processors, so that each finds a place, and one where there is little to do. */
+/* Threads that may build: no more than TBB counts processors, so that each finds a place, and one where there is little
+ * to do. */
 static int builders(const TcEmbree *embree) {
   int threads = tc_context_threads(embree->context), processors = 1;
   cpu_set_t set;
-  if (sched_getaffinity(0, sizeof set, &set) == 0) processors = CPU_COUNT(&set);
-  if (embree->count < MANY) threads = 1;
+  if (sched_getaffinity(0, sizeof set, &set) == 0)
+    processors = CPU_COUNT(&set);
+  if (embree->count < MANY)
+    threads = 1;
   return threads < processors ? threads : processors;
 }
 
@@ -162,14 +171,16 @@ static bool build(void *data, int64_t begin, int64_t end, int worker) {
   take_error(embree->device);
   rtcJoinCommitScene(embree->scene);
   const enum RTCError error = take_error(embree->device);
-  if (error != RTC_ERROR_NONE) atomic_store(&embree->error, (int)error);
+  if (error != RTC_ERROR_NONE)
+    atomic_store(&embree->error, (int)error);
   return true;
 }
 
-/* Threads are ours, which join in: TBB, were it to start one that the system refuses, would end the process. Its arena has no places but for
- * such guests. */
+/* Threads are ours, which join in: TBB, were it to start one that the system refuses, would end the process. Its arena
+ * has no places but for such guests. */
 static TetcastStatus make(TcEmbree *embree) {
-  if (!memory_suffices(embree->count)) return tc_error(embree->context, TETCAST_ERROR_MEMORY, "out of memory: Embree");
+  if (!memory_suffices(embree->count))
+    return tc_error(embree->context, TETCAST_ERROR_MEMORY, "out of memory: Embree");
   take_error(NULL);
   embree->device = rtcNewDevice("user_threads=4096,set_affinity=0");
   if (!embree->device) {
@@ -179,7 +190,8 @@ static TetcastStatus make(TcEmbree *embree) {
   take_error(embree->device);
   rtcSetDeviceMemoryMonitorFunction(embree->device, memory_monitor, embree);
   const TetcastStatus status = make_scene(embree);
-  if (status) return status;
+  if (status)
+    return status;
   tc_parallel_for(embree->context, builders(embree), 1, build, embree, NULL);
   return report(embree->context, (enum RTCError)atomic_load(&embree->error));
 }
@@ -208,8 +220,10 @@ TetcastStatus tc_embree_create(TetcastContext *context, int64_t count, const dou
 
 void tc_embree_destroy(TcEmbree *embree) {
   if (!embree) return;
-  if (embree->scene) rtcReleaseScene(embree->scene);
-  if (embree->device) rtcReleaseDevice(embree->device);
+  if (embree->scene)
+    rtcReleaseScene(embree->scene);
+  if (embree->device)
+    rtcReleaseDevice(embree->device);
   tc_release(embree->context, embree);
 }
 

@@ -46,8 +46,9 @@ struct TetcastVolume {
   TetcastVolumeInfo info;
 };
 
-/* A field whose values are all below 2^−TC_TINY_FIELD is stored times 2^TC_TINY_FIELD, so that interpolation does not underflow; one with a value
- * above TC_LARGEST_SCALAR is stored times 2^−TC_HUGE_FIELD, so that it does not overflow. */
+/* A field whose values are all below 2^−TC_TINY_FIELD is stored times 2^TC_TINY_FIELD, so that interpolation does not
+ * underflow; one with a value above TC_LARGEST_SCALAR is stored times 2^−TC_HUGE_FIELD, so that it does not overflow.
+ */
 enum { TC_TINY_FIELD = 500, TC_HUGE_FIELD = 64 };
 
 TetcastStatus tc_volume_create(TetcastContext *context, const TetcastMesh *mesh, const TetcastVolumeDesc *desc,

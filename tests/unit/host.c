@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Hosts that are not ours: any floating-point environment, threads with small stacks, callbacks that must come from the thread that called, and systems that
- * let no further thread start. Each gets the same bits as an ordinary host. */
+/* Hosts that are not ours: any floating-point environment, threads with small stacks, callbacks that must come from the
+ * thread that called, and systems that let no further thread start. Each gets the same bits as an ordinary host. */
 #define _GNU_SOURCE /* feenableexcept, RTLD_NEXT, MAP_ANONYMOUS */
 #include "support.h"
 
@@ -9,8 +9,8 @@
 #include <fenv.h>
 #include <malloc.h>
 #include <pthread.h>
-#include <stdatomic.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -41,10 +41,10 @@ typedef struct Host {
 } Host;
 
 static const Host hosts[] = {
-  {"ordinary", FE_TONEAREST, 0, false, false},        {"traps", FE_TONEAREST, 0, true, false},
-  {"upward", FE_UPWARD, 0, false, false},             {"downward", FE_DOWNWARD, 0, false, false},
-  {"toward zero", FE_TOWARDZERO, 0, false, false},    {"denormals are zero", FE_TONEAREST, 0x8040, false, false},
-  {"all of it", FE_UPWARD, 0x8040, true, true},
+    {"ordinary", FE_TONEAREST, 0, false, false},     {"traps", FE_TONEAREST, 0, true, false},
+    {"upward", FE_UPWARD, 0, false, false},          {"downward", FE_DOWNWARD, 0, false, false},
+    {"toward zero", FE_TOWARDZERO, 0, false, false}, {"denormals are zero", FE_TONEAREST, 0x8040, false, false},
+    {"all of it", FE_UPWARD, 0x8040, true, true},
 };
 enum { HOSTS = sizeof hosts / sizeof *hosts };
 
@@ -73,7 +73,8 @@ static Environment environment(void) {
 
 static Environment before;
 
-/* Between these two nothing may be computed that a trap would notice. One flag is up already, and stays; the others stay down. */
+/* Between these two nothing may be computed that a trap would notice. One flag is up already, and stays; the others
+ * stay down. */
 static void enter(void) {
   feclearexcept(FE_ALL_EXCEPT);
   fesetround(current->rounding);
@@ -86,8 +87,10 @@ static void enter(void) {
     __asm__ volatile("fldcw %0" : : "m"(control));
   }
 #endif
-  if (current->traps) feenableexcept(FE_ALL_EXCEPT);
-  else feraiseexcept(FE_OVERFLOW);
+  if (current->traps)
+    feenableexcept(FE_ALL_EXCEPT);
+  else
+    feraiseexcept(FE_OVERFLOW);
   before = environment();
 }
 
@@ -95,16 +98,17 @@ static void leave(const char *call) {
   const Environment after = environment();
   fesetenv(FE_DFL_ENV);
   if (memcmp(&before, &after, sizeof after) != 0) {
-    fail_msg("%s, %s: MXCSR %x, was %x; x87 %x %x, was %x %x; rounding %x, traps %x, flags %x", current->name, call, after.mxcsr, before.mxcsr,
-             after.control, after.status, before.control, before.status, (unsigned)after.rounding, (unsigned)after.traps, (unsigned)after.flags);
+    fail_msg("%s, %s: MXCSR %x, was %x; x87 %x %x, was %x %x; rounding %x, traps %x, flags %x", current->name, call,
+             after.mxcsr, before.mxcsr, after.control, after.status, before.control, before.status,
+             (unsigned)after.rounding, (unsigned)after.traps, (unsigned)after.flags);
   }
 }
 
-#define IN_HOST(call) \
-  do {                \
-    enter();          \
-    call;             \
-    leave(#call);     \
+#define IN_HOST(call)                                                                                                  \
+  do {                                                                                                                 \
+    enter();                                                                                                           \
+    call;                                                                                                              \
+    leave(#call);                                                                                                      \
   } while (0)
 
 static pthread_t caller;
@@ -134,7 +138,8 @@ static uint64_t sum;
 
 static void note(const void *data, size_t bytes) {
   const unsigned char *byte = data;
-  for (size_t i = 0; i < bytes; ++i) sum = (sum ^ byte[i]) * UINT64_C(1099511628211);
+  for (size_t i = 0; i < bytes; ++i)
+    sum = (sum ^ byte[i]) * UINT64_C(1099511628211);
 }
 
 enum { W = 40, H = 30 };
@@ -157,9 +162,11 @@ static void render(TetcastContext *context, TetcastScene *scene, const TetcastRe
   assert_int_equal(status, TETCAST_OK);
   note(tetcast_frame_pixels(frame), W * H * 4 * (channels ? sizeof(double) : sizeof(float)));
   for (uint32_t c = 1; c <= channels; c <<= 1) {
-    if (channels & c) note(tetcast_frame_channel(frame, (TetcastChannel)c), W * H * sizeof(double));
+    if (channels & c)
+      note(tetcast_frame_channel(frame, (TetcastChannel)c), W * H * sizeof(double));
   }
-  if (channels & TETCAST_CHANNEL_ERROR) note(&stats.error, sizeof stats.error);
+  if (channels & TETCAST_CHANNEL_ERROR)
+    note(&stats.error, sizeof stats.error);
   IN_HOST(tetcast_frame_destroy(&frame));
 }
 
@@ -182,7 +189,8 @@ static void all_kernels(TetcastContext *context, TetcastScene *scene) {
 
 /* Cells of several kinds, and an array of what has to be looked up in them. */
 static void cut(TetcastContext *context, const Cube *cube) {
-  int64_t nodes[8 + 10 + 6] = {0, 1, 8, 7, 49, 50, 57, 56, 0, 2, 14, 98, 1, 8, 7, 49, 50, 56, 0, 1, 7, 49, 50, 56}, offsets[] = {0, 8, 18, 24};
+  int64_t nodes[8 + 10 + 6] = {0, 1, 8, 7, 49, 50, 57, 56, 0, 2, 14, 98, 1, 8, 7, 49, 50, 56, 0, 1, 7, 49, 50, 56},
+                         offsets[] = {0, 8, 18, 24};
   const uint8_t types[] = {TETCAST_CELL_HEXAHEDRON, TETCAST_CELL_QUADRATIC_TETRAHEDRON, TETCAST_CELL_WEDGE};
   TetcastCellsDesc desc = tetcast_cells_desc_default();
   desc.vertices = (TetcastArray){cube->vertices, TETCAST_TYPE_FLOAT64, cube->vertex_count, 0};
@@ -229,8 +237,10 @@ static void numbers(const TetcastMesh *mesh, const TetcastField *field) {
 static void other_fields(TetcastContext *context, const TetcastMesh *mesh, const Cube *cube) {
   int64_t *integers = malloc((size_t)cube->cell_count * sizeof *integers);
   float *floats = malloc((size_t)cube->vertex_count * sizeof *floats);
-  for (int64_t i = 0; i < cube->cell_count; ++i) integers[i] = (INT64_C(1) << 60) + i;
-  for (int64_t i = 0; i < cube->vertex_count; ++i) floats[i] = i % 3 ? 1e-42F * (float)i : (float)i; /* denormal ones */
+  for (int64_t i = 0; i < cube->cell_count; ++i)
+    integers[i] = (INT64_C(1) << 60) + i;
+  for (int64_t i = 0; i < cube->vertex_count; ++i)
+    floats[i] = i % 3 ? 1e-42F * (float)i : (float)i; /* denormal ones */
   uint32_t signalling = 0x7fa00000;
   memcpy(&floats[3], &signalling, sizeof signalling);
   TetcastFieldDesc desc = tetcast_field_desc_default();
@@ -280,7 +290,8 @@ static void everything(TetcastContext *context, const Cube *cube, TetcastTravers
   TetcastTransferFunction *preset = NULL, *ramp = NULL;
   IN_HOST(status = tetcast_transfer_function_create_preset(context, volume, "magma", 0, 1, &preset));
   assert_int_equal(status, TETCAST_OK);
-  const double color[][4] = {{0, 1, 0.3, 0}, {0.4, 0, 1, 0}, {1, 0.5, 0.7, 1}}, opacity[][2] = {{0.1, 0}, {0.45, 1e-3}, {0.5, 0.9}, {0.9, 1}};
+  const double color[][4] = {{0, 1, 0.3, 0}, {0.4, 0, 1, 0}, {1, 0.5, 0.7, 1}},
+               opacity[][2] = {{0.1, 0}, {0.45, 1e-3}, {0.5, 0.9}, {0.9, 1}};
   TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
   desc.color = color[0];
   desc.opacity = opacity[0];
@@ -304,7 +315,8 @@ static void everything(TetcastContext *context, const Cube *cube, TetcastTravers
   IN_HOST(status = tetcast_scene_set_coefficients(scene, &coefficients));
   assert_int_equal(status, TETCAST_OK);
   const TetcastRenderDesc defaults = tetcast_render_desc_default();
-  render(context, scene, &defaults, TETCAST_CHANNEL_RADIANCE | TETCAST_CHANNEL_OPTICAL_DEPTH | TETCAST_CHANNEL_PATH_LENGTH);
+  render(context, scene, &defaults,
+         TETCAST_CHANNEL_RADIANCE | TETCAST_CHANNEL_OPTICAL_DEPTH | TETCAST_CHANNEL_PATH_LENGTH);
   /* What is refused, with a message. */
   TetcastTransferFunction *none = NULL;
   desc.unit_distance = (double)NAN;
@@ -321,7 +333,8 @@ static void everything(TetcastContext *context, const Cube *cube, TetcastTravers
   IN_HOST(tetcast_mesh_destroy(&mesh));
 }
 
-/* A cube with slivers, cells of no volume, one twice, and values that are not numbers. Embree builds on several threads where there are many cells. */
+/* A cube with slivers, cells of no volume, one twice, and values that are not numbers. Embree builds on several threads
+ * where there are many cells. */
 static Cube bad_cube(int n) {
   Cube cube = cube_create(n, 0.9);
   cube.cells[0] = cube.cells[1];
@@ -365,10 +378,13 @@ static void any_floating_point_environment(void **state) {
       callbacks = 0;
       elsewhere = other_environment = false;
       const uint64_t got = all_results(1 + h % 3, traversal ? TETCAST_TRAVERSAL_FACES : TETCAST_TRAVERSAL_SHELL, 6);
-      if (got != wanted) fail_msg("%s: not the same bits", current->name);
+      if (got != wanted)
+        fail_msg("%s: not the same bits", current->name);
       assert_true(callbacks > 3);
-      if (other_environment) fail_msg("%s: a callback was called in another environment than the host's", current->name);
-      if (elsewhere) fail_msg("%s: a callback was called from another thread", current->name);
+      if (other_environment)
+        fail_msg("%s: a callback was called in another environment than the host's", current->name);
+      if (elsewhere)
+        fail_msg("%s: a callback was called from another thread", current->name);
     }
   }
   current = &hosts[0];
@@ -380,8 +396,8 @@ static atomic_long started, refused_from, of_others;
 static bool counting;
 
 /* In the place of the system's for the whole process: from some number on there is no thread to be had. */
-__attribute__((visibility("default"))) int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*function)(void *),
-                                                          void *data) {
+__attribute__((visibility("default"))) int pthread_create(pthread_t *thread, const pthread_attr_t *attributes,
+                                                          void *(*function)(void *), void *data) {
   static int (*real)(pthread_t *, const pthread_attr_t *, void *(*)(void *), void *);
   if (!real) {
     void *symbol = dlsym(RTLD_NEXT, "pthread_create");
@@ -390,8 +406,10 @@ __attribute__((visibility("default"))) int pthread_create(pthread_t *thread, con
   if (counting) {
     const long number = atomic_fetch_add(&started, 1);
     Dl_info info;
-    if (dladdr(__builtin_return_address(0), &info) && info.dli_fname && !strstr(info.dli_fname, "tetcast")) atomic_fetch_add(&of_others, 1);
-    if (number >= atomic_load(&refused_from)) return EAGAIN;
+    if (dladdr(__builtin_return_address(0), &info) && info.dli_fname && !strstr(info.dli_fname, "tetcast"))
+      atomic_fetch_add(&of_others, 1);
+    if (number >= atomic_load(&refused_from))
+      return EAGAIN;
   }
   return real(thread, attributes, function, data);
 }
@@ -427,7 +445,8 @@ static void refuse_threads(Results *results, TetcastTraversal traversal, int n) 
   for (long from = 0; from <= all + 1; from += from < 12 ? 1 : all / 5) {
     atomic_store(&refused_from, from);
     atomic_store(&started, 0);
-    if (results(3, traversal, n) != wanted) fail_msg("another result where thread %ld of %ld can't be started", from, all);
+    if (results(3, traversal, n) != wanted)
+      fail_msg("another result where thread %ld of %ld can't be started", from, all);
   }
   counting = false;
 }
@@ -476,7 +495,8 @@ static size_t stack_of(void *(*function)(void *)) {
   pthread_join(thread, NULL);
   pthread_attr_destroy(&attributes);
   size_t free_bytes = 0;
-  while (free_bytes < STACK && stack[free_bytes] == 0xa5) ++free_bytes;
+  while (free_bytes < STACK && stack[free_bytes] == 0xa5)
+    ++free_bytes;
   munmap(stack, STACK);
   cube_destroy(&cube);
   return STACK - free_bytes;
@@ -487,7 +507,8 @@ static void little_of_the_callers_stack(void **state) {
   const size_t bytes = stack_of(measured), alone = stack_of(measured_alone);
   printf("%zu bytes of the caller's stack, %zu where no thread may start\n", bytes, alone);
   assert_true(bytes > 1024);
-  if (!SANITIZED) assert_true(bytes < ALLOWED && alone < ALLOWED_ALONE);
+  if (!SANITIZED)
+    assert_true(bytes < ALLOWED && alone < ALLOWED_ALONE);
 }
 
 /* ── memory that the system refuses beneath the library ── */
@@ -496,7 +517,7 @@ static atomic_long allocations, failing; /* number of the allocation that fails,
 static atomic_bool all_from;             /* … and all after it */
 
 #if !SANITIZED && defined(__GLIBC__)
-#define REFUSES_MEMORY true
+#define REFUSES_MEMORY              true
 #define IN_THE_PLACE_OF_THE_SYSTEMS __attribute__((visibility("default")))
 
 void *__libc_malloc(size_t size);
@@ -506,21 +527,34 @@ void *__libc_memalign(size_t alignment, size_t size);
 
 static bool refused(void) {
   const long number = atomic_load(&failing);
-  if (number == 0) return false;
+  if (number == 0)
+    return false;
   const long mine = atomic_fetch_add(&allocations, 1) + 1;
-  if (mine != number && !(mine > number && atomic_load(&all_from))) return false;
+  if (mine != number && !(mine > number && atomic_load(&all_from)))
+    return false;
   errno = ENOMEM;
   return true;
 }
 
-IN_THE_PLACE_OF_THE_SYSTEMS void *malloc(size_t size) { return refused() ? NULL : __libc_malloc(size); }
-IN_THE_PLACE_OF_THE_SYSTEMS void *calloc(size_t count, size_t size) { return refused() ? NULL : __libc_calloc(count, size); }
-IN_THE_PLACE_OF_THE_SYSTEMS void *realloc(void *memory, size_t size) { return size && refused() ? NULL : __libc_realloc(memory, size); }
-IN_THE_PLACE_OF_THE_SYSTEMS void *memalign(size_t alignment, size_t size) { return refused() ? NULL : __libc_memalign(alignment, size); }
-IN_THE_PLACE_OF_THE_SYSTEMS void *aligned_alloc(size_t alignment, size_t size) { return memalign(alignment, size); }
+IN_THE_PLACE_OF_THE_SYSTEMS void *malloc(size_t size) {
+  return refused() ? NULL : __libc_malloc(size);
+}
+IN_THE_PLACE_OF_THE_SYSTEMS void *calloc(size_t count, size_t size) {
+  return refused() ? NULL : __libc_calloc(count, size);
+}
+IN_THE_PLACE_OF_THE_SYSTEMS void *realloc(void *memory, size_t size) {
+  return size && refused() ? NULL : __libc_realloc(memory, size);
+}
+IN_THE_PLACE_OF_THE_SYSTEMS void *memalign(size_t alignment, size_t size) {
+  return refused() ? NULL : __libc_memalign(alignment, size);
+}
+IN_THE_PLACE_OF_THE_SYSTEMS void *aligned_alloc(size_t alignment, size_t size) {
+  return memalign(alignment, size);
+}
 IN_THE_PLACE_OF_THE_SYSTEMS int posix_memalign(void **result, size_t alignment, size_t size) {
   void *memory = memalign(alignment, size);
-  if (!memory) return ENOMEM;
+  if (!memory)
+    return ENOMEM;
   *result = memory;
   return 0;
 }
@@ -530,16 +564,20 @@ IN_THE_PLACE_OF_THE_SYSTEMS int posix_memalign(void **result, size_t alignment, 
 
 static void *own_allocate(void *user, size_t size, size_t alignment) {
   (void)user, (void)alignment;
-  return mmap(NULL, size + 64, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0); /* which is not refused here, or leaks as it likes */
+  return mmap(NULL, size + 64, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1,
+              0); /* which is not refused here, or leaks as it likes */
 }
 
-static void own_release(void *user, void *memory) { (void)user, (void)memory; }
+static void own_release(void *user, void *memory) {
+  (void)user, (void)memory;
+}
 
 /* Prepares a volume, once more if that fails, and renders it. The status of the first time. */
 static TetcastStatus prepare_and_render(const Cube *cube, int threads, bool own_memory) {
   TetcastContextDesc desc = tetcast_context_desc_default();
   desc.threads = threads;
-  if (own_memory) desc.allocate = own_allocate, desc.release = own_release;
+  if (own_memory)
+    desc.allocate = own_allocate, desc.release = own_release;
   TetcastContext *context = NULL;
   TetcastMesh *mesh = NULL;
   TetcastVolume *volume = NULL;
@@ -550,27 +588,33 @@ static TetcastStatus prepare_and_render(const Cube *cube, int threads, bool own_
   mesh_desc.ownership = TETCAST_BORROW;
   TetcastVolumeDesc volume_desc = tetcast_volume_desc_default();
   volume_desc.traversal = TETCAST_TRAVERSAL_FACES;
-  if (!status) status = tetcast_mesh_create(context, &mesh_desc, &mesh);
-  if (!status) status = tetcast_volume_create(context, mesh, &volume_desc, &volume);
+  if (!status)
+    status = tetcast_mesh_create(context, &mesh_desc, &mesh);
+  if (!status)
+    status = tetcast_volume_create(context, mesh, &volume_desc, &volume);
   atomic_store(&failing, 0);
-  if (status && own_memory && tetcast_volume_create(context, mesh, &volume_desc, &volume) != TETCAST_OK) status = TETCAST_STATUS_COUNT;
+  if (status && own_memory && tetcast_volume_create(context, mesh, &volume_desc, &volume) != TETCAST_OK)
+    status = TETCAST_STATUS_COUNT;
   tetcast_volume_destroy(&volume);
   tetcast_mesh_destroy(&mesh);
   tetcast_context_destroy(&context);
   return status;
 }
 
-/* In a child: its address space may grow by so much (0: without limit), and this allocation fails. Its status, or −1 if it was ended by a signal. */
+/* In a child: its address space may grow by so much (0: without limit), and this allocation fails. Its status, or −1 if
+ * it was ended by a signal. */
 static int status_in_child(const Cube *cube, int threads, size_t room, long number, bool and_all_after) {
   fflush(NULL);
   const pid_t child = fork();
   if (child == 0) {
     alarm(20);
-    if (freopen("/dev/null", "w", stderr) == NULL) _exit(65); /* where terminate() would say why */
+    if (freopen("/dev/null", "w", stderr) == NULL)
+      _exit(65); /* where terminate() would say why */
     if (room) {
       long pages = 0;
       FILE *file = fopen("/proc/self/statm", "r");
-      if (!file || fscanf(file, "%ld", &pages) != 1) _exit(65);
+      if (!file || fscanf(file, "%ld", &pages) != 1)
+        _exit(65);
       fclose(file);
       const rlim_t limit = (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + room;
       setrlimit(RLIMIT_AS, &(struct rlimit){limit, limit});
@@ -587,14 +631,16 @@ static int status_in_child(const Cube *cube, int threads, size_t room, long numb
 
 static void address_space_may_be_short(void **state) {
   (void)state;
-  if (SANITIZED) skip(); /* which need an address space of their own */
+  if (SANITIZED)
+    skip(); /* which need an address space of their own */
   Cube cube = cube_create(20, 0.3);
   for (int threads = 1; threads <= 2; ++threads) {
     int refusals = 0;
     bool enough = false;
     for (size_t room = 1 << 20; !enough; room += room / 8) {
       const int status = status_in_child(&cube, threads, room, 0, false);
-      if (status != TETCAST_OK && status != TETCAST_ERROR_MEMORY) fail_msg("with %zu bytes and %d threads: status %d", room, threads, status);
+      if (status != TETCAST_OK && status != TETCAST_ERROR_MEMORY)
+        fail_msg("with %zu bytes and %d threads: status %d", room, threads, status);
       refusals += status == TETCAST_ERROR_MEMORY;
       enough = status == TETCAST_OK;
       assert_true(room < (size_t)1 << 31);
@@ -604,11 +650,13 @@ static void address_space_may_be_short(void **state) {
   cube_destroy(&cube);
 }
 
-/* Every allocation of Embree's and of TBB's, but for those that TBB makes once in a process, which is done before. Where all that come after fail
- * as well, Embree may end the process in two calls, by what it notes a thread's errors in (volume.h). */
+/* Every allocation of Embree's and of TBB's, but for those that TBB makes once in a process, which is done before.
+ * Where all that come after fail as well, Embree may end the process in two calls, by what it notes a thread's errors
+ * in (volume.h). */
 static void allocations_beneath_may_fail(void **state) {
   (void)state;
-  if (!REFUSES_MEMORY) skip();
+  if (!REFUSES_MEMORY)
+    skip();
   Cube cube = cube_create(4, 0.3);
   assert_int_equal(prepare_and_render(&cube, 1, true), TETCAST_OK);
   for (int and_all_after = 0; and_all_after < 2; ++and_all_after) {
@@ -619,9 +667,11 @@ static void allocations_beneath_may_fail(void **state) {
       ended += status == -1;
       refusals += status == TETCAST_ERROR_MEMORY;
       in_a_row = status == TETCAST_OK ? in_a_row + 1 : 0;
-      if (status > 0 && status != TETCAST_ERROR_MEMORY) fail_msg("allocation %ld%s: status %d", number, and_all_after ? " and all after" : "", status);
+      if (status > 0 && status != TETCAST_ERROR_MEMORY)
+        fail_msg("allocation %ld%s: status %d", number, and_all_after ? " and all after" : "", status);
     }
-    printf("%ld allocations%s: %d refusals reported, %d times ended\n", number - 20, and_all_after ? " and all after" : "", refusals, ended);
+    printf("%ld allocations%s: %d refusals reported, %d times ended\n", number - 20,
+           and_all_after ? " and all after" : "", refusals, ended);
     assert_true(refusals > 20);
     assert_true(ended <= 4 * and_all_after);
   }
@@ -629,7 +679,9 @@ static void allocations_beneath_may_fail(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(address_space_may_be_short), cmocka_unit_test(allocations_beneath_may_fail), cmocka_unit_test(any_floating_point_environment),
-                                     cmocka_unit_test(threads_may_be_refused), cmocka_unit_test(little_of_the_callers_stack)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(address_space_may_be_short), cmocka_unit_test(allocations_beneath_may_fail),
+      cmocka_unit_test(any_floating_point_environment), cmocka_unit_test(threads_may_be_refused),
+      cmocka_unit_test(little_of_the_callers_stack)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

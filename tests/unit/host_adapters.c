@@ -21,8 +21,11 @@ typedef struct Host {
   bool traps, flushes;
 } Host;
 
-static const Host hosts[] = {{"ordinary", FE_TONEAREST, false, false}, {"traps", FE_TONEAREST, true, false}, {"upward", FE_UPWARD, false, false},
-                             {"toward zero", FE_TOWARDZERO, false, true}, {"all of it", FE_DOWNWARD, true, true}};
+static const Host hosts[] = {{"ordinary", FE_TONEAREST, false, false},
+                             {"traps", FE_TONEAREST, true, false},
+                             {"upward", FE_UPWARD, false, false},
+                             {"toward zero", FE_TOWARDZERO, false, true},
+                             {"all of it", FE_DOWNWARD, true, true}};
 enum { HOSTS = sizeof hosts / sizeof *hosts };
 
 static const Host *host;
@@ -32,9 +35,11 @@ static void enter(void) {
   feclearexcept(FE_ALL_EXCEPT);
   fesetround(host->rounding);
 #ifdef __x86_64__
-  if (host->flushes) _mm_setcsr(_mm_getcsr() | 0x8040);
+  if (host->flushes)
+    _mm_setcsr(_mm_getcsr() | 0x8040);
 #endif
-  if (host->traps) feenableexcept(FE_ALL_EXCEPT);
+  if (host->traps)
+    feenableexcept(FE_ALL_EXCEPT);
 }
 
 static void leave(const char *call) {
@@ -45,16 +50,17 @@ static void leave(const char *call) {
   }
 }
 
-#define IN_HOST(call) \
-  do {                \
-    enter();          \
-    call;             \
-    leave(#call);     \
+#define IN_HOST(call)                                                                                                  \
+  do {                                                                                                                 \
+    enter();                                                                                                           \
+    call;                                                                                                              \
+    leave(#call);                                                                                                      \
   } while (0)
 
 static void note(const void *data, size_t bytes) {
   const unsigned char *byte = data;
-  for (size_t i = 0; i < bytes; ++i) sum = (sum ^ byte[i]) * UINT64_C(1099511628211);
+  for (size_t i = 0; i < bytes; ++i)
+    sum = (sum ^ byte[i]) * UINT64_C(1099511628211);
 }
 
 static void note_mesh(const TetcastMesh *mesh) {
@@ -74,7 +80,8 @@ static void note_file(const char *path) {
   unsigned char bytes[4096];
   FILE *file = fopen(path, "rb");
   assert_non_null(file);
-  for (size_t n; (n = fread(bytes, 1, sizeof bytes, file)) > 0;) note(bytes, n);
+  for (size_t n; (n = fread(bytes, 1, sizeof bytes, file)) > 0;)
+    note(bytes, n);
   fclose(file);
 }
 
@@ -101,7 +108,8 @@ static void surface_to_mesh(TetcastContext *context, const char *folder, Tetcast
 static void write_and_read(TetcastContext *context, const char *folder, const TetcastMesh *mesh) {
   const int64_t count = tetcast_mesh_vertex_count(mesh);
   double *values = malloc((size_t)count * sizeof *values);
-  for (int64_t i = 0; i < count; ++i) values[i] = i % 7 == 0 ? (double)NAN : i % 5 == 0 ? 5e-324 * (double)i : sin((double)i);
+  for (int64_t i = 0; i < count; ++i)
+    values[i] = i % 7 == 0 ? (double)NAN : i % 5 == 0 ? 5e-324 * (double)i : sin((double)i);
   TetcastField *field = field_of(context, values, count, TETCAST_POINT);
   const char *const name = "values";
   const TetcastField *const fields = field;
@@ -154,7 +162,8 @@ static void write_pictures(TetcastContext *context, const char *folder) {
     TetcastStatus status;
     IN_HOST(status = tetcast_image_write(context, path, frame, NULL));
     assert_int_equal(status, TETCAST_OK);
-    if (strcmp(names[i], "picture.tif") != 0) note_file(path); /* which has the time in it */
+    if (strcmp(names[i], "picture.tif") != 0)
+      note_file(path); /* which has the time in it */
     unlink(path);
   }
   tetcast_frame_destroy(&frame);
@@ -176,8 +185,10 @@ static void any_floating_point_environment(void **state) {
     write_pictures(fixture.context, folder);
     tetcast_mesh_destroy(&mesh);
     fixture_end(&fixture);
-    if (h == 0) wanted = sum;
-    if (sum != wanted) fail_msg("%s: not the same bytes", host->name);
+    if (h == 0)
+      wanted = sum;
+    if (sum != wanted)
+      fail_msg("%s: not the same bytes", host->name);
   }
   rmdir(folder);
 }

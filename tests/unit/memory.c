@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Every allocation of the library made to fail in turn, in every public call that allocates: the call reports it, leaks nothing, leaves
- * what there was as it was, and does its work when it is made again. */
+/* Every allocation of the library made to fail in turn, in every public call that allocates: the call reports it, leaks
+ * nothing, leaves what there was as it was, and does its work when it is made again. */
 #include "support.h"
 
 enum { W = 16, H = 12 };
@@ -8,23 +8,25 @@ enum { W = 16, H = 12 };
 /* One run through a scenario, of whose allocations one fails. */
 typedef struct Run {
   Fixture fixture;
-  bool failed;   /* a call has reported it */
-  uint64_t sum;  /* of all results */
+  bool failed;  /* a call has reported it */
+  uint64_t sum; /* of all results */
 } Run;
 
 static void note(Run *run, const void *data, size_t bytes) {
   const unsigned char *byte = data;
-  for (size_t i = 0; i < bytes; ++i) run->sum = (run->sum ^ byte[i]) * UINT64_C(1099511628211);
+  for (size_t i = 0; i < bytes; ++i)
+    run->sum = (run->sum ^ byte[i]) * UINT64_C(1099511628211);
 }
 
 /* After a call with this status: whether it has to be made again. */
 static bool again(Run *run, TetcastStatus status, const char *call) {
   Fixture *fixture = &run->fixture;
-  if (!status) return false;
+  if (!status)
+    return false;
   if (status != TETCAST_ERROR_MEMORY || !strstr(fixture->message, "out of memory") || fixture->fail_at == 0 ||
       fixture->allocations < fixture->fail_at) {
-    fail_msg("%s: status %d, \"%s\" at allocation %ld of which number %ld fails", call, (int)status, fixture->message, fixture->allocations,
-             fixture->fail_at);
+    fail_msg("%s: status %d, \"%s\" at allocation %ld of which number %ld fails", call, (int)status, fixture->message,
+             fixture->allocations, fixture->fail_at);
   }
   run->failed = true;
   fixture->fail_at = 0;
@@ -32,26 +34,28 @@ static bool again(Run *run, TetcastStatus status, const char *call) {
 }
 
 /* Makes the call, which stores something in `out` or NULL; if memory fails, again. */
-#define MAKE(run, out, call)                                                  \
-  do {                                                                        \
-    const long live = (run)->fixture.live;                                    \
-    const TetcastStatus first = (call);                                       \
-    if (again(run, first, #call)) {                                           \
-      assert_null(out);                                                       \
-      assert_int_equal((run)->fixture.live, live);                            \
-      assert_int_equal((call), TETCAST_OK);                                   \
-    }                                                                         \
+#define MAKE(run, out, call)                                                                                           \
+  do {                                                                                                                 \
+    const long live = (run)->fixture.live;                                                                             \
+    const TetcastStatus first = (call);                                                                                \
+    if (again(run, first, #call)) {                                                                                    \
+      assert_null(out);                                                                                                \
+      assert_int_equal((run)->fixture.live, live);                                                                     \
+      assert_int_equal((call), TETCAST_OK);                                                                            \
+    }                                                                                                                  \
   } while (0)
 /* The same where the result goes into what there is. */
-#define CALL(run, call)                                                       \
-  do {                                                                        \
-    const TetcastStatus first = (call);                                       \
-    if (again(run, first, #call)) assert_int_equal((call), TETCAST_OK);       \
+#define CALL(run, call)                                                                                                \
+  do {                                                                                                                 \
+    const TetcastStatus first = (call);                                                                                \
+    if (again(run, first, #call))                                                                                      \
+      assert_int_equal((call), TETCAST_OK);                                                                            \
   } while (0)
 
 /* ── cells ── */
 
-/* Curved cells, so that there are added vertices before the counting, and polyhedra with two faces in a plane, each of which gets a vertex. */
+/* Curved cells, so that there are added vertices before the counting, and polyhedra with two faces in a plane, each of
+ * which gets a vertex. */
 typedef struct Cells {
   double vertices[2000][3];
   int64_t connectivity[2000], offsets[200], faces[8000], face_offsets[200];
@@ -73,11 +77,13 @@ static void end_cell(Cells *cells, TetcastCellType type) {
 static void make_cells(Cells *cells, int curved, int polyhedra) {
   static const double corner[4][3] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}};
   static const int edge[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
-  static const int box[] = {7, 3, 0, 3, 1, 3, 3, 2, 1, 4, 4, 5, 6, 7, 4, 0, 1, 5, 4, 4, 1, 2, 6, 5, 4, 2, 3, 7, 6, 4, 3, 0, 4, 7};
+  static const int box[] = {7, 3, 0, 3, 1, 3, 3, 2, 1, 4, 4, 5, 6, 7, 4, 0, 1,
+                            5, 4, 4, 1, 2, 6, 5, 4, 2, 3, 7, 6, 4, 3, 0, 4, 7};
   memset(cells, 0, sizeof *cells);
   for (int i = 0; i < curved; ++i) {
     const double x = -3.0 * i - 3;
-    for (int k = 0; k < 4; ++k) add_vertex(cells, x + corner[k][0], corner[k][1], corner[k][2]);
+    for (int k = 0; k < 4; ++k)
+      add_vertex(cells, x + corner[k][0], corner[k][1], corner[k][2]);
     for (int e = 0; e < 6; ++e) {
       const double *a = corner[edge[e][0]], *b = corner[edge[e][1]];
       add_vertex(cells, x + 0.5 * a[0] + 0.5 * b[0], 0.5 * a[1] + 0.5 * b[1], 0.5 * a[2] + 0.5 * b[2]);
@@ -86,14 +92,17 @@ static void make_cells(Cells *cells, int curved, int polyhedra) {
   }
   for (int i = 0; i < polyhedra; ++i) {
     const int64_t first = cells->vertex_count;
-    static const double at[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
-    for (int k = 0; k < 8; ++k) add_vertex(cells, 2.0 * i + at[k][0], at[k][1], at[k][2]);
+    static const double at[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                    {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    for (int k = 0; k < 8; ++k)
+      add_vertex(cells, 2.0 * i + at[k][0], at[k][1], at[k][2]);
     cells->face_offsets[cells->cell_count] = cells->face_count;
     cells->faces[cells->face_count++] = box[0];
     for (size_t k = 1; k < sizeof box / sizeof *box;) {
       const int corners = box[k++];
       cells->faces[cells->face_count++] = corners;
-      for (int c = 0; c < corners; ++c) cells->faces[cells->face_count++] = first + box[k++];
+      for (int c = 0; c < corners; ++c)
+        cells->faces[cells->face_count++] = first + box[k++];
     }
     end_cell(cells, TETCAST_CELL_POLYHEDRON);
   }
@@ -126,9 +135,15 @@ static void cut_cells(Run *run, int curved, int polyhedra, bool sources) {
   free(cells);
 }
 
-static void curved_and_polyhedra(Run *run) { cut_cells(run, 1, 150, true); }
-static void polyhedra_alone(Run *run) { cut_cells(run, 0, 60, false); }
-static void curved_alone(Run *run) { cut_cells(run, 60, 0, true); }
+static void curved_and_polyhedra(Run *run) {
+  cut_cells(run, 1, 150, true);
+}
+static void polyhedra_alone(Run *run) {
+  cut_cells(run, 0, 60, false);
+}
+static void curved_alone(Run *run) {
+  cut_cells(run, 60, 0, true);
+}
 
 /* ── pictures ── */
 
@@ -142,7 +157,8 @@ typedef struct Kind {
 } Kind;
 
 static void narrow_transfer(Run *run, TetcastTransferFunction **transfer, bool narrow) {
-  static const double color[][4] = {{0, 1, 0, 0}, {0.5, 0, 1, 0}, {1, 0, 0, 1}}, extinction[2][2][2] = {{{0.1, 0}, {1, 5}}, {{0.93, 0}, {0.97, 5}}};
+  static const double color[][4] = {{0, 1, 0, 0}, {0.5, 0, 1, 0}, {1, 0, 0, 1}},
+                      extinction[2][2][2] = {{{0.1, 0}, {1, 5}}, {{0.93, 0}, {0.97, 5}}};
   TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
   desc.color = color[0];
   desc.color_count = 3;
@@ -165,8 +181,10 @@ static void render(Run *run, const Kind *kind, TetcastScene *scene) {
   frame_desc.width = W;
   frame_desc.height = H;
   frame_desc.groups = 3;
-  if (kind->coefficients) frame_desc.channels = TETCAST_CHANNEL_OPTICAL_DEPTH | TETCAST_CHANNEL_RADIANCE;
-  else if (kind->integrator == TETCAST_INTEGRATOR_EXACT) frame_desc.channels = TETCAST_CHANNEL_ERROR;
+  if (kind->coefficients)
+    frame_desc.channels = TETCAST_CHANNEL_OPTICAL_DEPTH | TETCAST_CHANNEL_RADIANCE;
+  else if (kind->integrator == TETCAST_INTEGRATOR_EXACT)
+    frame_desc.channels = TETCAST_CHANNEL_ERROR;
   TetcastFrame *frame = (TetcastFrame *)&frame_desc;
   MAKE(run, frame, tetcast_frame_create(context, &frame_desc, &frame));
   TetcastRenderDesc desc = tetcast_render_desc_default();
@@ -218,15 +236,21 @@ static void whole_picture(Run *run, const Kind *kind) {
   TetcastScene *scene = (TetcastScene *)&cube;
   MAKE(run, scene, tetcast_scene_create(context, volume, &scene));
   TetcastTransferFunction *transfer = (TetcastTransferFunction *)&cube;
-  if (kind->preset) MAKE(run, transfer, tetcast_transfer_function_create_preset(context, volume, "magma", 0, 1, &transfer));
-  else narrow_transfer(run, &transfer, kind->narrow);
-  if (kind->coefficients) set_coefficients(run, scene, field);
-  else CALL(run, tetcast_scene_set_transfer_function(scene, transfer));
+  if (kind->preset)
+    MAKE(run, transfer, tetcast_transfer_function_create_preset(context, volume, "magma", 0, 1, &transfer));
+  else
+    narrow_transfer(run, &transfer, kind->narrow);
+  if (kind->coefficients)
+    set_coefficients(run, scene, field);
+  else
+    CALL(run, tetcast_scene_set_transfer_function(scene, transfer));
   render(run, kind, scene);
   if (kind->replaced) { /* the scene is prepared anew */
     CALL(run, tetcast_volume_set_field(volume, field));
-    if (kind->coefficients) set_coefficients(run, scene, field);
-    else CALL(run, tetcast_scene_set_transfer_function(scene, transfer));
+    if (kind->coefficients)
+      set_coefficients(run, scene, field);
+    else
+      CALL(run, tetcast_scene_set_transfer_function(scene, transfer));
     render(run, kind, scene);
   }
   tetcast_scene_destroy(&scene);
@@ -238,17 +262,33 @@ static void whole_picture(Run *run, const Kind *kind) {
   cube_destroy(&cube);
 }
 
-static void preset(Run *run) { whole_picture(run, &(Kind){.preset = true, .health = true, .replaced = true}); }
-static void faces(Run *run) { whole_picture(run, &(Kind){.traversal = TETCAST_TRAVERSAL_FACES, .ownership = TETCAST_BORROW}); }
-static void visible_clusters(Run *run) { whole_picture(run, &(Kind){.narrow = true, .replaced = true}); }
-static void cell_field(Run *run) { whole_picture(run, &(Kind){.association = TETCAST_CELL, .preset = true}); }
-static void coefficients(Run *run) { whole_picture(run, &(Kind){.coefficients = true, .replaced = true}); }
+static void preset(Run *run) {
+  whole_picture(run, &(Kind){.preset = true, .health = true, .replaced = true});
+}
+static void faces(Run *run) {
+  whole_picture(run, &(Kind){.traversal = TETCAST_TRAVERSAL_FACES, .ownership = TETCAST_BORROW});
+}
+static void visible_clusters(Run *run) {
+  whole_picture(run, &(Kind){.narrow = true, .replaced = true});
+}
+static void cell_field(Run *run) {
+  whole_picture(run, &(Kind){.association = TETCAST_CELL, .preset = true});
+}
+static void coefficients(Run *run) {
+  whole_picture(run, &(Kind){.coefficients = true, .replaced = true});
+}
 static void coefficients_of_cells(Run *run) {
   whole_picture(run, &(Kind){.coefficients = true, .association = TETCAST_CELL, .traversal = TETCAST_TRAVERSAL_FACES});
 }
-static void single_precision(Run *run) { whole_picture(run, &(Kind){.tolerance = 0.05}); }
-static void table(Run *run) { whole_picture(run, &(Kind){.integrator = TETCAST_INTEGRATOR_TABLE}); }
-static void gauss(Run *run) { whole_picture(run, &(Kind){.integrator = TETCAST_INTEGRATOR_GAUSS}); }
+static void single_precision(Run *run) {
+  whole_picture(run, &(Kind){.tolerance = 0.05});
+}
+static void table(Run *run) {
+  whole_picture(run, &(Kind){.integrator = TETCAST_INTEGRATOR_TABLE});
+}
+static void gauss(Run *run) {
+  whole_picture(run, &(Kind){.integrator = TETCAST_INTEGRATOR_GAUSS});
+}
 
 /* ── all of them ── */
 
@@ -256,10 +296,18 @@ static const struct {
   const char *name;
   void (*run)(Run *run);
 } scenarios[] = {
-  {"curved cells and polyhedra", curved_and_polyhedra}, {"polyhedra", polyhedra_alone}, {"curved cells", curved_alone},
-  {"preset", preset}, {"faces", faces}, {"visible clusters", visible_clusters}, {"cell field", cell_field},
-  {"coefficients", coefficients}, {"coefficients of cells", coefficients_of_cells}, {"single precision", single_precision},
-  {"table", table}, {"gauss", gauss},
+    {"curved cells and polyhedra", curved_and_polyhedra},
+    {"polyhedra", polyhedra_alone},
+    {"curved cells", curved_alone},
+    {"preset", preset},
+    {"faces", faces},
+    {"visible clusters", visible_clusters},
+    {"cell field", cell_field},
+    {"coefficients", coefficients},
+    {"coefficients of cells", coefficients_of_cells},
+    {"single precision", single_precision},
+    {"table", table},
+    {"gauss", gauss},
 };
 
 static void any_allocation_may_fail(void **state) {
@@ -274,13 +322,17 @@ static void any_allocation_may_fail(void **state) {
         scenarios[s].run(&run);
         reported += run.failed;
         const bool all = fail_at > 0 && run.fixture.allocations < fail_at;
-        if (fail_at == 0) wanted = run.sum;
-        if (run.sum != wanted) fail_msg("%s, %d threads: another result after allocation %ld failed", scenarios[s].name, threads, fail_at);
+        if (fail_at == 0)
+          wanted = run.sum;
+        if (run.sum != wanted)
+          fail_msg("%s, %d threads: another result after allocation %ld failed", scenarios[s].name, threads, fail_at);
         fixture_end(&run.fixture); /* nothing leaks */
-        if (all) break;
+        if (all)
+          break;
       }
       /* Done without: memory for threads, and lists that are made later when there is none now. */
-      if (!(fail_at > 8 && reported >= (fail_at - 2) / 2)) fail_msg("%s: %ld failures of %ld reported", scenarios[s].name, reported, fail_at - 2);
+      if (!(fail_at > 8 && reported >= (fail_at - 2) / 2))
+        fail_msg("%s: %ld failures of %ld reported", scenarios[s].name, reported, fail_at - 2);
     }
   }
 }
@@ -294,6 +346,7 @@ static void a_context_needs_memory(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_context_needs_memory), cmocka_unit_test(any_allocation_may_fail)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_context_needs_memory),
+                                     cmocka_unit_test(any_allocation_may_fail)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

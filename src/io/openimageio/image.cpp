@@ -110,7 +110,9 @@ struct Format {
 };
 
 // From 2.5 on, OpenImageIO itself has a limit for PNG, BMP and PNM, below what the formats or libpng have.
-constexpr int64_t limited(int64_t limit) { return OIIO_VERSION >= OIIO_MAKE_VERSION(2, 5, 0) ? 65535 : limit; }
+constexpr int64_t limited(int64_t limit) {
+  return OIIO_VERSION >= OIIO_MAKE_VERSION(2, 5, 0) ? 65535 : limit;
+}
 
 constexpr Format formats[] = {{"png", TypeDesc::UINT8, limited(1000000)}, {"openexr", TypeDesc::HALF, 1 << 20},
                               {"tiff", TypeDesc::FLOAT, 1 << 20},         {"jpeg", TypeDesc::UINT8, 65500},
@@ -380,8 +382,9 @@ TetcastStatus guarded(TetcastContext *context, const char *path, const Pixels &p
     return tetcast_context_error(context, TETCAST_ERROR_MEMORY, "cannot write image '%s': out of memory", path);
   } catch (const std::system_error &error) {
     const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
-    return tetcast_context_error(context, TETCAST_ERROR_IO, "cannot write image '%s': %s%s", path, error.what(),
-                                 no_thread ? ": OpenImageIO needs a thread of its own for this format; .png and .jpg don't" : "");
+    return tetcast_context_error(
+        context, TETCAST_ERROR_IO, "cannot write image '%s': %s%s", path, error.what(),
+        no_thread ? ": OpenImageIO needs a thread of its own for this format; .png and .jpg don't" : "");
   } catch (const std::exception &error) {
     return tetcast_context_error(context, TETCAST_ERROR_IO, "cannot write image '%s': %s", path, error.what());
   } catch (...) {
