@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The public boundary: checks arguments, nothing else. */
+/* The public boundary: checks arguments, guards the host's floating-point environment, and hands what takes long to a
+ * thread of the library's own (call.h); nothing else. What computes nothing, and calls nothing, needs no guard. */
 #include <tetcast/tetcast.h>
 
 #include <inttypes.h>
@@ -7,6 +8,7 @@
 #include <string.h>
 
 #include "base/base.h"
+#include "base/call.h"
 #include "mesh/cut.h"
 #include "mesh/mesh.h"
 #include "optics/transfer.h"
@@ -57,6 +59,7 @@ const char *tetcast_status_string(TetcastStatus status) {
 TetcastContextDesc tetcast_context_desc_default(void) { return (TetcastContextDesc){.cookie = TC_COOKIE}; }
 
 TetcastStatus tetcast_context_create(const TetcastContextDesc *desc, TetcastContext **context) {
+  TC_ENTRY;
   const TetcastContextDesc defaults = tetcast_context_desc_default();
   if (!desc) desc = &defaults;
   if (!context) return TETCAST_ERROR_ARGUMENT;
@@ -68,12 +71,14 @@ TetcastStatus tetcast_context_create(const TetcastContextDesc *desc, TetcastCont
 }
 
 void tetcast_context_destroy(TetcastContext **context) {
+  TC_ENTRY;
   if (!context) return;
   tc_context_destroy(*context);
   *context = NULL;
 }
 
 TetcastStatus tetcast_context_set_threads(TetcastContext *context, int threads) {
+  TC_ENTRY;
   CHECK_GIVEN(context, context);
   if (threads < 0 || threads > 4096) return ARGUMENT(context, "%d threads: must be in [0, 4096]", threads);
   atomic_store(&context->threads, threads);
@@ -83,6 +88,7 @@ TetcastStatus tetcast_context_set_threads(TetcastContext *context, int threads) 
 int tetcast_context_threads(const TetcastContext *context) { return context ? tc_context_threads(context) : 1; }
 
 TetcastStatus tetcast_context_error(TetcastContext *context, TetcastStatus status, const char *format, ...) {
+  TC_ENTRY;
   va_list arguments;
   va_start(arguments, format);
   tc_message_v(context, TETCAST_SEVERITY_ERROR, format, arguments);
@@ -91,6 +97,7 @@ TetcastStatus tetcast_context_error(TetcastContext *context, TetcastStatus statu
 }
 
 void tetcast_context_message(TetcastContext *context, TetcastSeverity severity, const char *format, ...) {
+  TC_ENTRY;
   va_list arguments;
   va_start(arguments, format);
   tc_message_v(context, severity, format, arguments);
@@ -107,7 +114,19 @@ static TetcastStatus check_array(TetcastContext *context, const TetcastArray *ar
 
 TetcastMeshDesc tetcast_mesh_desc_default(void) { return (TetcastMeshDesc){.cookie = TC_COOKIE}; }
 
+typedef struct MeshCreate {
+  TetcastContext *context;
+  const TetcastMeshDesc *desc;
+  TetcastMesh **mesh;
+} MeshCreate;
+
+static TetcastStatus mesh_create(void *data) {
+  const MeshCreate *call = data;
+  return tc_mesh_create(call->context, call->desc, call->mesh);
+}
+
 TetcastStatus tetcast_mesh_create(TetcastContext *context, const TetcastMeshDesc *desc, TetcastMesh **mesh) {
+  TC_ENTRY;
   CHECK_OUT(context, mesh);
   CHECK_GIVEN(context, context);
   CHECK_DESC(context, desc);
@@ -120,10 +139,11 @@ TetcastStatus tetcast_mesh_create(TetcastContext *context, const TetcastMeshDesc
   if (desc->tetrahedra.count > 0 && (tc_type_size(desc->tetrahedra.type) == 0 || tc_type_is_float(desc->tetrahedra.type))) {
     return ARGUMENT(context, "tetrahedra must be of an integer type");
   }
-  return tc_mesh_create(context, desc, mesh);
+  return tc_call(mesh_create, &(MeshCreate){context, desc, mesh}, NULL);
 }
 
 void tetcast_mesh_destroy(TetcastMesh **mesh) {
+  TC_ENTRY;
   if (!mesh) return;
   tc_mesh_destroy(*mesh);
   *mesh = NULL;
@@ -133,15 +153,30 @@ int64_t tetcast_mesh_vertex_count(const TetcastMesh *mesh) { return mesh->vertic
 int64_t tetcast_mesh_tetrahedron_count(const TetcastMesh *mesh) { return mesh->tetrahedra.count; }
 TetcastArray tetcast_mesh_vertices(const TetcastMesh *mesh) { return mesh->vertices; }
 TetcastArray tetcast_mesh_tetrahedra(const TetcastMesh *mesh) { return mesh->tetrahedra; }
-void tetcast_mesh_vertex(const TetcastMesh *mesh, int64_t i, double position[3]) { tc_mesh_vertex(mesh, i, position); }
+void tetcast_mesh_vertex(const TetcastMesh *mesh, int64_t i, double position[3]) {
+  TC_ENTRY;
+  tc_mesh_vertex(mesh, i, position);
+}
 void tetcast_mesh_tetrahedron(const TetcastMesh *mesh, int64_t i, int64_t indices[4]) { tc_mesh_tetrahedron(mesh, i, indices); }
 void tetcast_mesh_bounds(const TetcastMesh *mesh, double bounds[6]) { memcpy(bounds, mesh->bounds, sizeof mesh->bounds); }
 
+typedef struct MeshExamine {
+  TetcastContext *context;
+  const TetcastMesh *mesh;
+  TetcastMeshHealth *health;
+} MeshExamine;
+
+static TetcastStatus mesh_examine(void *data) {
+  const MeshExamine *call = data;
+  return tc_mesh_health(call->context, call->mesh, call->health);
+}
+
 TetcastStatus tetcast_mesh_health(TetcastContext *context, const TetcastMesh *mesh, TetcastMeshHealth *health) {
+  TC_ENTRY;
   CHECK_GIVEN(context, context);
   CHECK_GIVEN(context, mesh);
   CHECK_GIVEN(context, health);
-  return tc_mesh_health(context, mesh, health);
+  return tc_call(mesh_examine, &(MeshExamine){context, mesh, health}, NULL);
 }
 
 /* ── cells ── */
@@ -178,15 +213,28 @@ static TetcastStatus check_cells(TetcastContext *context, const TetcastCellsDesc
   return TETCAST_OK;
 }
 
+typedef struct CellsCut {
+  TetcastContext *context;
+  const TetcastCellsDesc *desc;
+  TetcastCut **cut;
+} CellsCut;
+
+static TetcastStatus cells_cut(void *data) {
+  const CellsCut *call = data;
+  return tc_cells_cut(call->context, call->desc, call->cut);
+}
+
 TetcastStatus tetcast_cells_cut(TetcastContext *context, const TetcastCellsDesc *desc, TetcastCut **cut) {
+  TC_ENTRY;
   CHECK_OUT(context, cut);
   CHECK_GIVEN(context, context);
   CHECK_DESC(context, desc);
   const TetcastStatus status = check_cells(context, desc);
-  return status ? status : tc_cells_cut(context, desc, cut);
+  return status ? status : tc_call(cells_cut, &(CellsCut){context, desc, cut}, NULL);
 }
 
 void tetcast_cut_destroy(TetcastCut **cut) {
+  TC_ENTRY;
   if (!cut) return;
   tc_cut_destroy(*cut);
   *cut = NULL;
@@ -195,6 +243,7 @@ void tetcast_cut_destroy(TetcastCut **cut) {
 TetcastArray tetcast_cut_tetrahedra(const TetcastCut *cut) { return tc_cut_tetrahedra(cut); }
 TetcastArray tetcast_cut_sources(const TetcastCut *cut) { return tc_cut_sources(cut); }
 bool tetcast_cut_interpolate(const TetcastCut *cut, const TetcastArray *values, int components, double *result) {
+  TC_ENTRY;
   return tc_cut_interpolate(cut, values, components, result);
 }
 void tetcast_cut_info(const TetcastCut *cut, TetcastCutInfo *info) { *info = *tc_cut_info(cut); }
@@ -202,6 +251,7 @@ void tetcast_cut_info(const TetcastCut *cut, TetcastCutInfo *info) { *info = *tc
 TetcastFieldDesc tetcast_field_desc_default(void) { return (TetcastFieldDesc){.cookie = TC_COOKIE}; }
 
 TetcastStatus tetcast_field_create(TetcastContext *context, const TetcastFieldDesc *desc, TetcastField **field) {
+  TC_ENTRY;
   CHECK_OUT(context, field);
   CHECK_GIVEN(context, context);
   CHECK_DESC(context, desc);
@@ -215,6 +265,7 @@ TetcastStatus tetcast_field_create(TetcastContext *context, const TetcastFieldDe
 }
 
 void tetcast_field_destroy(TetcastField **field) {
+  TC_ENTRY;
   if (!field) return;
   tc_field_destroy(*field);
   *field = NULL;
@@ -223,9 +274,11 @@ void tetcast_field_destroy(TetcastField **field) {
 TetcastAssociation tetcast_field_association(const TetcastField *field) { return field->association; }
 TetcastArray tetcast_field_values(const TetcastField *field) { return field->values; }
 double tetcast_field_value(const TetcastField *field, int64_t i) {
+  TC_ENTRY;
   return tc_array_double(&field->values, field->values.stride, i, 0);
 }
 void tetcast_field_range(const TetcastField *field, double range[2], int64_t *nonfinite_count) {
+  TC_ENTRY;
   tc_field_range(field, range, nonfinite_count);
 }
 
@@ -233,8 +286,21 @@ void tetcast_field_range(const TetcastField *field, double range[2], int64_t *no
 
 TetcastVolumeDesc tetcast_volume_desc_default(void) { return (TetcastVolumeDesc){.cookie = TC_COOKIE}; }
 
+typedef struct VolumeCreate {
+  TetcastContext *context;
+  const TetcastMesh *mesh;
+  TetcastVolumeDesc desc;
+  TetcastVolume **volume;
+} VolumeCreate;
+
+static TetcastStatus volume_create(void *data) {
+  const VolumeCreate *call = data;
+  return tc_volume_create(call->context, call->mesh, &call->desc, call->volume);
+}
+
 TetcastStatus tetcast_volume_create(TetcastContext *context, const TetcastMesh *mesh, const TetcastVolumeDesc *desc,
                                     TetcastVolume **volume) {
+  TC_ENTRY;
   const TetcastVolumeDesc defaults = tetcast_volume_desc_default();
   if (!desc) desc = &defaults;
   CHECK_OUT(context, volume);
@@ -244,10 +310,12 @@ TetcastStatus tetcast_volume_create(TetcastContext *context, const TetcastMesh *
   if (desc->traversal != TETCAST_TRAVERSAL_SHELL && desc->traversal != TETCAST_TRAVERSAL_FACES) {
     return ARGUMENT(context, "unknown traversal %d", (int)desc->traversal);
   }
-  return tc_volume_create(context, mesh, desc, volume);
+  VolumeCreate call = {context, mesh, *desc, volume};
+  return tc_call(volume_create, &call, &call.desc.progress);
 }
 
 void tetcast_volume_destroy(TetcastVolume **volume) {
+  TC_ENTRY;
   if (!volume) return;
   tc_volume_destroy(*volume);
   *volume = NULL;
@@ -263,6 +331,7 @@ TetcastTransferFunctionDesc tetcast_transfer_function_desc_default(void) {
 
 TetcastStatus tetcast_transfer_function_create(TetcastContext *context, const TetcastTransferFunctionDesc *desc,
                                                TetcastTransferFunction **transfer_function) {
+  TC_ENTRY;
   CHECK_OUT(context, transfer_function);
   CHECK_GIVEN(context, context);
   CHECK_DESC(context, desc);
@@ -275,6 +344,7 @@ TetcastStatus tetcast_transfer_function_create(TetcastContext *context, const Te
 const char *tetcast_preset_name(int i) { return tc_preset_name(i); }
 
 void tetcast_transfer_function_destroy(TetcastTransferFunction **transfer_function) {
+  TC_ENTRY;
   if (!transfer_function) return;
   tc_transfer_destroy(*transfer_function);
   *transfer_function = NULL;
@@ -292,13 +362,17 @@ const double *tetcast_transfer_function_extinction(const TetcastTransferFunction
 
 /* ── camera, frame ── */
 
-TetcastCamera tetcast_camera_default(const double bounds[6], double aspect) { return tc_camera_default(bounds, aspect); }
+TetcastCamera tetcast_camera_default(const double bounds[6], double aspect) {
+  TC_ENTRY;
+  return tc_camera_default(bounds, aspect);
+}
 
 TetcastFrameDesc tetcast_frame_desc_default(void) {
   return (TetcastFrameDesc){.cookie = TC_COOKIE, .type = TETCAST_TYPE_FLOAT64, .groups = 1};
 }
 
 TetcastStatus tetcast_frame_create(TetcastContext *context, const TetcastFrameDesc *desc, TetcastFrame **frame) {
+  TC_ENTRY;
   const int64_t largest = INT64_C(1) << 20;
   CHECK_OUT(context, frame);
   CHECK_GIVEN(context, context);
@@ -324,6 +398,7 @@ TetcastStatus tetcast_frame_create(TetcastContext *context, const TetcastFrameDe
 }
 
 void tetcast_frame_destroy(TetcastFrame **frame) {
+  TC_ENTRY;
   if (!frame) return;
   tc_frame_destroy(*frame);
   *frame = NULL;
@@ -341,6 +416,7 @@ const void *tetcast_frame_channel(const TetcastFrame *frame, TetcastChannel chan
 /* ── scene ── */
 
 TetcastStatus tetcast_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **scene) {
+  TC_ENTRY;
   CHECK_OUT(context, scene);
   CHECK_GIVEN(context, context);
   CHECK_GIVEN(context, volume);
@@ -348,29 +424,55 @@ TetcastStatus tetcast_scene_create(TetcastContext *context, const TetcastVolume 
 }
 
 void tetcast_scene_destroy(TetcastScene **scene) {
+  TC_ENTRY;
   if (!scene) return;
   tc_scene_destroy(*scene);
   *scene = NULL;
 }
 
+typedef struct SetField {
+  TetcastScene *scene;
+  const TetcastField *field;
+} SetField;
+
+static TetcastStatus set_field(void *data) {
+  const SetField *call = data;
+  return tc_scene_set_field(call->scene, call->field);
+}
+
 TetcastStatus tetcast_scene_set_field(TetcastScene *scene, const TetcastField *field) {
+  TC_ENTRY;
   if (!scene) return TETCAST_ERROR_ARGUMENT;
   CHECK_GIVEN(scene->context, field);
-  return tc_scene_set_field(scene, field);
+  return tc_call(set_field, &(SetField){scene, field}, NULL);
+}
+
+typedef struct CreatePreset {
+  const TetcastScene *scene;
+  const char *name;
+  double low, high;
+  TetcastTransferFunction **transfer_function;
+} CreatePreset;
+
+static TetcastStatus create_preset(void *data) {
+  const CreatePreset *call = data;
+  return tc_scene_preset(call->scene, call->name, call->low, call->high, call->transfer_function);
 }
 
 TetcastStatus tetcast_scene_create_preset(const TetcastScene *scene, const char *name, double low, double high,
                                           TetcastTransferFunction **transfer_function) {
+  TC_ENTRY;
   if (!scene) return TETCAST_ERROR_ARGUMENT;
   TetcastContext *context = scene->context;
   CHECK_OUT(context, transfer_function);
   CHECK_GIVEN(context, name);
   if (!scene->values) return ARGUMENT(context, "a preset needs a scene with a field");
   if (!isfinite(low) || !isfinite(high) || low > high) return ARGUMENT(context, "range %g to %g of a preset", low, high);
-  return tc_scene_preset(scene, name, low, high, transfer_function);
+  return tc_call(create_preset, &(CreatePreset){scene, name, low, high, transfer_function}, NULL);
 }
 
 TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer_function) {
+  TC_ENTRY;
   if (!scene) return TETCAST_ERROR_ARGUMENT;
   CHECK_GIVEN(scene->context, transfer_function);
   return tc_scene_set_transfer_function(scene, transfer_function);
@@ -387,7 +489,18 @@ static TetcastStatus check_fields(TetcastContext *context, const TetcastField *c
   return TETCAST_OK;
 }
 
+typedef struct SetCoefficients {
+  TetcastScene *scene;
+  const TetcastCoefficientsDesc *desc;
+} SetCoefficients;
+
+static TetcastStatus set_coefficients(void *data) {
+  const SetCoefficients *call = data;
+  return tc_scene_set_coefficients(call->scene, call->desc);
+}
+
 TetcastStatus tetcast_scene_set_coefficients(TetcastScene *scene, const TetcastCoefficientsDesc *desc) {
+  TC_ENTRY;
   if (!scene) return TETCAST_ERROR_ARGUMENT;
   TetcastContext *context = scene->context;
   CHECK_DESC(context, desc);
@@ -399,7 +512,7 @@ TetcastStatus tetcast_scene_set_coefficients(TetcastScene *scene, const TetcastC
     return ARGUMENT(context, "an extinction of %d groups with an emission of %d: they must be as many, or one of the two for all",
                     desc->extinction_count, desc->emission_count);
   }
-  return tc_scene_set_coefficients(scene, desc);
+  return tc_call(set_coefficients, &(SetCoefficients){scene, desc}, NULL);
 }
 
 int tetcast_scene_groups(const TetcastScene *scene) { return scene->coefficients ? scene->coefficients->groups : 0; }
@@ -448,8 +561,22 @@ static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderD
   return TETCAST_OK;
 }
 
+typedef struct SceneRender {
+  const TetcastScene *scene;
+  const TetcastCamera *camera;
+  TetcastRenderDesc desc;
+  TetcastFrame *frame;
+  TetcastRenderStats *stats;
+} SceneRender;
+
+static TetcastStatus scene_render(void *data) {
+  const SceneRender *call = data;
+  return tc_scene_render(call->scene, call->camera, &call->desc, call->frame, call->stats);
+}
+
 TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
                                    TetcastFrame *frame, TetcastRenderStats *stats) {
+  TC_ENTRY;
   const TetcastRenderDesc defaults = tetcast_render_desc_default();
   if (!desc) desc = &defaults;
   if (!scene) return TETCAST_ERROR_ARGUMENT;
@@ -470,5 +597,6 @@ TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamer
   }
   TetcastStatus status = check_scene(scene, desc, frame);
   if (!status) status = check_camera(context, camera);
-  return status ? status : tc_scene_render(scene, camera, desc, frame, stats);
+  SceneRender call = {scene, camera, *desc, frame, stats};
+  return status ? status : tc_call(scene_render, &call, &call.desc.progress);
 }

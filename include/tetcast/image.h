@@ -32,12 +32,15 @@ typedef struct TetcastImageDesc {
 
 TETCAST_API TetcastImageDesc tetcast_image_desc_default(void);
 
-/* Writes the frame; the format is told by the path's extension: .png .exr .tif .tiff .jpg .jpeg, also .bmp .tga .webp .ppm .hdr. A pixel
- * type the format can't hold, an unknown extension: TETCAST_ERROR_ARGUMENT. Over a translucent background, integer formats with alpha
- * hold unassociated colour. A frame's channels follow the four in .exr and .tif with floating-point pixels (float beside half in .exr), in this
- * order and in EXR by these names: "radiance", "optical_depth", "transmittance", "path_length", "error"; of several groups
- * "radiance.00", "radiance.01" …, as many digits as the last needs. What can't hold them: TETCAST_ERROR_ARGUMENT. The file appears whole or
- * not at all. */
+/* Writes the frame; the format is told by the path's extension: .png .exr .tif .tiff .jpg .jpeg, also .bmp .tga .webp
+ * .ppm .hdr. A pixel type the format can't hold, an unknown extension: TETCAST_ERROR_ARGUMENT. Over a translucent
+ * background, integer formats with alpha hold unassociated colour. A frame's channels follow the four in .exr and .tif
+ * with floating-point pixels (float beside half in .exr), in this order and in EXR by these names: "radiance",
+ * "optical_depth", "transmittance", "path_length", "error"; of several groups "radiance.00", "radiance.01" …, as many
+ * digits as the last needs. What can't hold them: TETCAST_ERROR_ARGUMENT. The file appears whole or not at all.
+ * OpenImageIO starts threads of its own for .exr and .tif; where the system lets none start, that is TETCAST_ERROR_IO
+ * (and loading this library may end the process: OpenImageIO is often built with OpenVDB, whose logger insists on
+ * threads when it is loaded). */
 TETCAST_API TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, const TetcastFrame *frame,
                                               const TetcastImageDesc *desc);
 

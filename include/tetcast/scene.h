@@ -31,7 +31,8 @@ TETCAST_API void tetcast_scene_destroy(TetcastScene **scene);
 TETCAST_API TetcastStatus tetcast_scene_set_field(TetcastScene *scene, const TetcastField *field);
 
 /* A transfer function from a colour map: colours of preset `name` (tetcast_preset_name()) over [low, high] with an extinction that rises from 0 at `low` to what
- * makes rays that meet anything opaque to one half on average. The scene must have a field (TETCAST_ERROR_ARGUMENT); an unknown name is
+ * makes rays that meet anything opaque to one half on average, whatever the unit of length and however values are distributed; only where that is above the
+ * largest double, in a mesh smaller than some 1e-308, it is that. The scene must have a field (TETCAST_ERROR_ARGUMENT); an unknown name is
  * TETCAST_ERROR_ARGUMENT. The caller destroys the result. */
 TETCAST_API TetcastStatus tetcast_scene_create_preset(const TetcastScene *scene, const char *name, double low, double high,
                                                       TetcastTransferFunction **transfer_function);
@@ -48,7 +49,8 @@ TETCAST_API TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scen
  * Without extinction nothing is absorbed; without emission, as in radiography, there is no radiance. What isn't given isn't computed. */
 typedef struct TetcastCoefficientsDesc {
   uint32_t cookie;
-  const TetcastField *const *extinction; /* [extinction_count], one scalar each: ≥ 0; above 2^1016 / largest coordinate: as that */
+  const TetcastField *const
+      *extinction; /* [extinction_count], one scalar each: ≥ 0; above 2^999 / largest coordinate: as that */
   const TetcastField *const *emission;   /* [emission_count]; may be negative: what comes out is linear in it */
   int extinction_count, emission_count;  /* 0: none; 1: the same for all groups; else the number of groups, to TETCAST_MAX_GROUPS */
   const char *extinction_name, *emission_name; /* for messages; NULL: "extinction", "emission" */

@@ -40,7 +40,9 @@ typedef struct TetcastTransferFunctionDesc {
 
 TETCAST_API TetcastTransferFunctionDesc tetcast_transfer_function_desc_default(void);
 
-/* All arrays are copied. Unsorted, negative or non-finite entries are TETCAST_ERROR_ARGUMENT; the message names the knot. */
+/* All arrays are copied. Unsorted, negative or non-finite entries are TETCAST_ERROR_ARGUMENT; the message names the
+ * knot. Any finite entry will do: where it is drawn, an extinction above 2^999 (5e300) / the mesh's largest coordinate
+ * counts as that, which nothing can be seen through, and a colour above 2^500 (3e150) as that. */
 TETCAST_API TetcastStatus tetcast_transfer_function_create(TetcastContext *context, const TetcastTransferFunctionDesc *desc,
                                                            TetcastTransferFunction **transfer_function);
 

@@ -9,6 +9,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "base/call.h"
+
 enum { ALIGNMENT = 64 };
 
 /* Large blocks come from the system and go back to it at once, where malloc() may keep what is freed; in huge pages if there are any,
@@ -85,7 +87,22 @@ void tc_message_v(TetcastContext *context, TetcastSeverity severity, const char 
   for (char *c = text; *c; ++c) {
     if (*c == '\n' || *c == '\r') *c = ' '; /* one line, whatever a file's name or another library's words hold */
   }
-  context->message(context->message_user, severity, text);
+  tc_call_message(context, severity, text);
+}
+
+TetcastStatus tc_error(TetcastContext *context, TetcastStatus status, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  tc_message_v(context, TETCAST_SEVERITY_ERROR, format, arguments);
+  va_end(arguments);
+  return status;
+}
+
+void tc_warning(TetcastContext *context, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  tc_message_v(context, TETCAST_SEVERITY_WARNING, format, arguments);
+  va_end(arguments);
 }
 
 void *tc_allocate(TetcastContext *context, int64_t count, size_t size) {

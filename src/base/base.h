@@ -29,8 +29,17 @@ void tc_context_destroy(TetcastContext *context);
 int tc_context_threads(const TetcastContext *context);
 
 void tc_message_v(TetcastContext *context, TetcastSeverity severity, const char *format, va_list arguments);
-#define tc_error tetcast_context_error
-#define tc_warning(context, ...) tetcast_context_message(context, TETCAST_SEVERITY_WARNING, __VA_ARGS__)
+/* Returns `status`. */
+TetcastStatus tc_error(TetcastContext *context, TetcastStatus status, const char *format, ...)
+#if defined(__GNUC__)
+    __attribute__((format(printf, 3, 4)))
+#endif
+    ;
+void tc_warning(TetcastContext *context, const char *format, ...)
+#if defined(__GNUC__)
+    __attribute__((format(printf, 2, 3)))
+#endif
+    ;
 
 /* Memory for `count` things of `size` bytes, aligned to 64, not cleared; NULL when there is none (or the product
  * overflows). At least one byte is allocated, so that NULL always means failure. */

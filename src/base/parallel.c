@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "base/parallel.h"
 
-#include <pthread.h>
+#include "base/call.h"
 
 /* Threads live for one loop: starting one costs some 20 µs, loops worth splitting take far longer, and a host application
  * finds no threads of ours between calls. (libgomp would end the process where a thread can't be started.) */
@@ -18,7 +18,7 @@ typedef struct Loop {
 typedef struct Worker {
   Loop *loop;
   int index;
-  pthread_t thread;
+  TcThread thread;
 } Worker;
 
 static void work(Loop *loop, int worker) {
@@ -35,10 +35,9 @@ static void work(Loop *loop, int worker) {
   }
 }
 
-static void *thread_main(void *argument) {
-  const Worker *worker = argument;
+static void work_of_thread(void *data) {
+  const Worker *worker = data;
   work(worker->loop, worker->index);
-  return NULL;
 }
 
 TetcastStatus tc_parallel_for(TetcastContext *context, int64_t count, int64_t grain, TcTask *task, void *data,
@@ -48,17 +47,19 @@ TetcastStatus tc_parallel_for(TetcastContext *context, int64_t count, int64_t gr
   atomic_init(&loop.done, 0);
   atomic_init(&loop.stop, false);
   const int64_t pieces = (count + loop.grain - 1) / loop.grain;
-  int threads = tc_context_threads(context);
+  int threads = tc_call_alone() ? 1 : tc_context_threads(context);
   if (threads > pieces) threads = (int)pieces;
   Worker *workers = threads > 1 ? tc_allocate(context, threads, sizeof *workers) : NULL;
   int started = 1;
   while (workers && started < threads) {
     workers[started] = (Worker){.loop = &loop, .index = started};
-    if (pthread_create(&workers[started].thread, NULL, thread_main, &workers[started]) != 0) break;
+    if (!tc_thread_start(&workers[started].thread, work_of_thread, &workers[started], tc_call_here()))
+      break;
     ++started;
   }
   work(&loop, 0);
-  for (int i = 1; i < started; ++i) pthread_join(workers[i].thread, NULL);
+  for (int i = 1; i < started; ++i)
+    tc_thread_join(&workers[i].thread);
   tc_release(context, workers);
   return atomic_load(&loop.stop) ? TETCAST_ERROR_CANCELLED : TETCAST_OK;
 }

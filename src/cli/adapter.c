@@ -11,6 +11,7 @@
 
 #include "cli.h"
 #include "file.h"
+#include "loading.h"
 
 #define TEXT_OF(number) #number
 #define TEXT(number)    TEXT_OF(number)
@@ -49,7 +50,7 @@ static void *open_adapter(const char *soname) {
     path = cli_print("%s/%s", folder, soname);
     free(folder);
   }
-  void *library = dlopen(path && access(path, F_OK) == 0 ? path : soname, RTLD_NOW | RTLD_LOCAL);
+  void *library = cli_load_library(path && access(path, F_OK) == 0 ? path : soname);
   free(path);
   return library;
 }

@@ -5,7 +5,7 @@
  * A few groups are integrated one after the other, each for all rays at once, a ray in each lane. Many are integrated ray after ray, a group in each
  * lane: a vertex's values lie next to each other in memory, and are loaded as they are.
  *
- * What is gathered is, for each group, a quarter of the radiance in the volume's unit of length (lengths are below 4: no sum along a ray overflows), the
+ * What is gathered is, for each group, the radiance in the volume's unit of length and times emission_scale (so no sum along a ray overflows), the
  * optical depth and the transmittance; then the length of the path, the mean opacity of the groups that differ in it, and a bound on the error of
  * colour and opacity. */
 #ifndef TC_GATHER_COEFFICIENTS_H
@@ -155,6 +155,13 @@ TC_INLINE TcEnds tc_groups_ends(const unsigned on, const TcGroups *groups, int a
   return ends;
 }
 
+TC_INLINE TcEnds tc_groups_scaled(const unsigned on, TcEnds ends, double scale) {
+  ends.near *= scale;
+  ends.far *= scale;
+  if (on & TC_BOUND) ends.spread *= scale;
+  return ends;
+}
+
 /* An extinction's density and its integrals. */
 typedef struct TcAbsorption {
   TcMask valid;
@@ -177,7 +184,7 @@ TC_INLINE TcAbsorption tc_groups_absorb(const unsigned on, const TcCoefficients 
 
 TC_INLINE void tc_groups_emit(const unsigned on, const TcEnds *emission, const TcAbsorption *absorption, const TcStretch *stretch, TcBeam *beam) {
   const TcVec zero = tc_set(0), before = beam->block_transmittance;
-  TcVec radiance = 0.25 * stretch->length * tc_madd(emission->near, absorption->moments.m0, emission->far * absorption->moments.m1);
+  TcVec radiance = stretch->length * tc_madd(emission->near, absorption->moments.m0, emission->far * absorption->moments.m1);
   const TcMask valid = tc_and(absorption->valid, tc_eq(radiance, radiance));
   /* What lies behind the depth at which rays may end counts for nothing, whether they end there or not. */
   const TcMask reached = tc_le(beam->depth + beam->block_depth, tc_set(TC_OPAQUE_DEPTH));
@@ -189,7 +196,7 @@ TC_INLINE void tc_groups_emit(const unsigned on, const TcEnds *emission, const T
     const TcVec seen = beam->transmittance * before;
     beam->emitted = tc_madd(seen, tc_abs(radiance), beam->emitted);
     beam->depth_error += absorption->spread;
-    beam->radiance_error = tc_madd(seen, tc_select(valid, 0.25 * emission->spread, zero), beam->radiance_error);
+    beam->radiance_error = tc_madd(seen, tc_select(valid, emission->spread, zero), beam->radiance_error);
   }
 }
 
@@ -212,7 +219,7 @@ TC_INLINE void tc_groups_by_group(const unsigned on, const TcCoefficients *c, Tc
       tc_groups_dim(on, &absorption, &groups->beam[g]);
       continue;
     }
-    const TcEnds ends = tc_groups_ends(on, groups, emission * TC_LANES, false, stretch);
+    const TcEnds ends = tc_groups_scaled(on, tc_groups_ends(on, groups, emission * TC_LANES, false, stretch), c->emission_scale);
     tc_groups_emit(on, &ends, &absorption, stretch, &groups->beam[g]);
   }
 }
@@ -231,7 +238,8 @@ TC_INLINE void tc_groups_of_ray(const unsigned on, const TcCoefficients *c, TcGr
       tc_groups_dim(on, &absorption, beam);
       continue;
     }
-    const TcEnds ends = tc_groups_ends(on, groups, first + emission + (one_emission ? 0 : g), one_emission, stretch);
+    const TcEnds ends = tc_groups_scaled(on, tc_groups_ends(on, groups, first + emission + (one_emission ? 0 : g), one_emission, stretch),
+                                         c->emission_scale);
     tc_groups_emit(on, &ends, &absorption, stretch, beam);
   }
 }
@@ -305,7 +313,7 @@ static double tc_groups_bound(const TcGatherJob *job, const TcGroups *groups, co
   const double opacity = depth_error + rounding * -expm1(-tc_groups_of(groups, l, g, depth)), growth = depth_error < 700 ? exp(depth_error) : INFINITY;
   const double emitted = tc_groups_of(groups, l, g, emitted) * (1 + rounding) * growth;
   const double radiance = growth * tc_groups_of(groups, l, g, radiance_error) + emitted * (depth_error + rounding);
-  return fmax(opacity < 1 ? opacity : 1, c->emission_count ? ldexp(radiance, job->exponent + 2) : 0);
+  return fmax(opacity < 1 ? opacity : 1, c->emission_count ? ldexp(radiance, job->exponent + c->emission_exponent) : 0);
 }
 
 TC_NOINLINE void tc_groups_end(const unsigned on, const TcGatherJob *job, TcGroups *groups, const TcEnding *ending, double (*sums)[TC_LANES]) {

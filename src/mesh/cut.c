@@ -371,9 +371,28 @@ static void write_centre(Cutter *cutter, const TcShape *shape, const TcTets *pie
   }
 }
 
+/* The unit in which to look at a cell with these nodes: 1, or if volumes could overflow or underflow, a cell's largest
+ * coordinate. */
+static int unit_of(const Cutter *cutter, const uint32_t *id, int64_t count) {
+  double largest = 0;
+  for (int64_t k = 0; k < count; ++k) {
+    double p[3];
+    tc_mesh_vertex(&cutter->mesh, id[k], p);
+    largest = fmax(largest, fmax(fabs(p[0]), fmax(fabs(p[1]), fabs(p[2]))));
+  }
+  int exponent = 0;
+  if ((largest > 0 && largest < 0x1p-200) || (largest > 0x1p300 && isfinite(largest)))
+    frexp(largest, &exponent);
+  return exponent;
+}
+
 /* Counts or writes what pieces->id is cut into. */
 static void emit(Cutter *cutter, const TcShape *shape, TcTets *pieces, int64_t cell, Block *block) {
-  for (uint32_t k = 0; k < shape->corners; ++k) position(cutter, pieces->id[k], pieces->p[k]);
+  for (uint32_t k = 0; k < shape->corners; ++k) {
+    position(cutter, pieces->id[k], pieces->p[k]);
+    for (int c = 0; pieces->exponent && c < 3; ++c)
+      pieces->p[k][c] = ldexp(pieces->p[k][c], -pieces->exponent);
+  }
   tc_cut_shape(shape, pieces);
   int64_t entries = 0;
   for (uint32_t k = 0; pieces->centred && k < shape->corners; ++k) entries += entries_of(cutter, pieces->id[k]);
@@ -443,6 +462,8 @@ static void cut_curved(Cutter *cutter, const Cell *cell, Scratch *scratch, Block
 static void cut_cell(Cutter *cutter, const Cell *cell, Scratch *scratch, Block *block) {
   const Block before = *block;
   TcTets *pieces = &scratch->pieces;
+  pieces->exponent = cell->curved ? unit_of(cutter, scratch->node, cell->lattice.nodes)
+                                  : unit_of(cutter, pieces->id, cell->shape.corners);
   if (cell->curved) cut_curved(cutter, cell, scratch, block);
   else emit(cutter, &cell->shape, pieces, cell->index, block);
   if (cutter->writes) return;
@@ -626,10 +647,13 @@ static TetcastStatus run(Cutter *cutter, int threads) {
   if (!status) status = lay_out(cutter);
   cutter->writes = true;
   if (!status) status = pass(cutter);
-  cutter->cut->points.count = cutter->cut->info.added_vertices;
-  cutter->cut->points.entries = cutter->cut->points.start ? cutter->cut->points.start[cutter->cut->points.count] : 0;
-  tc_points_forget_keys(&cutter->cut->points);
-  return status;
+  if (status)
+    return status; /* the lists may lack room for what was counted */
+  TcPoints *points = &cutter->cut->points;
+  points->count = cutter->cut->info.added_vertices;
+  points->entries = points->start ? points->start[points->count] : 0;
+  tc_points_forget_keys(points);
+  return TETCAST_OK;
 }
 
 TetcastStatus tc_cells_cut(TetcastContext *context, const TetcastCellsDesc *desc, TetcastCut **out) {

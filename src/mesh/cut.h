@@ -47,7 +47,8 @@ enum { TC_FIXED_CORNERS = 12, TC_FIXED_TETS = 20 }; /* the most that a shape wit
 /* Memory for a cell and what it is cut into. */
 typedef struct TcTets {
   uint32_t *id;         /* [corners]: indices of vertices */
-  double (*p)[3];       /* [corners + 1]: where they are; the last for the centre */
+  int exponent;         /* of the unit, a power of two, in which … */
+  double (*p)[3];       /* [corners + 1]: … they are there; the last for the centre */
   uint32_t (*tet)[4];   /* [corners of all faces]: of places in `id`; `corners` is the centre */
   int64_t count;        /* of tet */
   bool centred;

@@ -17,18 +17,47 @@ static void cross(const double a[3], const double b[3], double c[3]) {
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+/* A mesh seen in units of its largest coordinate, a power of two: products of coordinates then neither overflow nor,
+ * where they matter, underflow. */
+typedef struct Scaled {
+  const TetcastMesh *mesh;
+  int exponent;
+  double scale[2]; /* their product is 2^−exponent, which alone could overflow */
+} Scaled;
+
+static Scaled scaled(const TetcastMesh *mesh) {
+  Scaled s = {.mesh = mesh};
+  double largest = 0;
+  for (int k = 0; k < 6; ++k)
+    largest = fmax(largest, fabs(mesh->bounds[k]));
+  if (largest > 0)
+    frexp(largest, &s.exponent);
+  const int half = -s.exponent / 2;
+  s.scale[0] = ldexp(1, half);
+  s.scale[1] = ldexp(1, -s.exponent - half);
+  return s;
+}
+
+static void scaled_vertex(const Scaled *s, int64_t i, double p[3]) {
+  tc_mesh_vertex(s->mesh, i, p);
+  for (int k = 0; k < 3; ++k)
+    p[k] = p[k] * s->scale[0] * s->scale[1];
+}
+
 /* (v1 − v0) × (v2 − v0) · (v3 − v0) / 6 */
-static double signed_volume(const TetcastMesh *mesh, const int64_t v[4]) {
+static double signed_volume(const Scaled *mesh, const int64_t v[4]) {
   double p[4][3], e[3][3], n[3];
-  for (int k = 0; k < 4; ++k) tc_mesh_vertex(mesh, v[k], p[k]);
+  for (int k = 0; k < 4; ++k)
+    scaled_vertex(mesh, v[k], p[k]);
   for (int k = 0; k < 3; ++k) subtract(p[k + 1], p[0], e[k]);
   cross(e[0], e[1], n);
   return dot(n, e[2]) / 6;
 }
 
-static double triangle_area(const TetcastMesh *mesh, const uint32_t v[3]) {
+static double triangle_area(const Scaled *mesh, const uint32_t v[3]) {
   double p[3][3], e[2][3], n[3];
-  for (int k = 0; k < 3; ++k) tc_mesh_vertex(mesh, v[k], p[k]);
+  for (int k = 0; k < 3; ++k)
+    scaled_vertex(mesh, v[k], p[k]);
   for (int k = 0; k < 2; ++k) subtract(p[k + 1], p[0], e[k]);
   cross(e[0], e[1], n);
   return sqrt(dot(n, n)) / 2;
@@ -113,15 +142,19 @@ TetcastStatus tc_mesh_health(TetcastContext *context, const TetcastMesh *mesh, T
   if (status) return status;
   health->duplicate_cells = adjacency.duplicates;
   health->nonmanifold_faces = adjacency.nonmanifold;
+  const Scaled unit = scaled(mesh);
   for (int64_t i = 0; i < mesh->tetrahedra.count; ++i) {
     int64_t v[4];
     tc_mesh_tetrahedron(mesh, i, v);
-    const double volume = signed_volume(mesh, v);
+    const double volume = signed_volume(&unit, v);
     health->degenerate_cells += volume == 0;
     health->inverted_cells += volume < 0;
     health->volume += fabs(volume);
   }
-  for (int64_t i = 0; i < adjacency.shell_count; ++i) health->boundary_area += triangle_area(mesh, adjacency.shell[i].vertex);
+  for (int64_t i = 0; i < adjacency.shell_count; ++i)
+    health->boundary_area += triangle_area(&unit, adjacency.shell[i].vertex);
+  health->volume = ldexp(ldexp(ldexp(health->volume, unit.exponent), unit.exponent), unit.exponent);
+  health->boundary_area = ldexp(ldexp(health->boundary_area, unit.exponent), unit.exponent);
   health->boundary_faces = adjacency.boundary;
   status = count_components(context, &adjacency, &health->components);
   tc_adjacency_clear(&adjacency);

@@ -153,6 +153,7 @@ static void add_gauss(TcLight *light, const TcPieces *pieces, const TcSampler *s
   double depth = 0, emitted[3] = {0, 0, 0};
   for (int i = 0; i < n; ++i) {
     o[i] = tc_pieces_at(pieces, s0 + (s1 - s0) * sampler->nodes[i]);
+    o[i].extinction = fmin(o[i].extinction, TC_LARGEST_COLOR); /* times a colour it must not overflow */
     depth += sampler->weights[i] * o[i].extinction * length;
   }
   for (int i = 0; i < n; ++i) {

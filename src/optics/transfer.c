@@ -41,7 +41,9 @@ static TetcastStatus check_knots(TetcastContext *context, const Knots *knots, co
 
 static void interpolate(const Knots *knots, int64_t i, double x, double *values) {
   const double *a = knots->data + i * knots->width, *b = a + knots->width;
-  const double whole = b[0] - a[0], w = (x - a[0]) / whole, v = (b[0] - x) / whole;
+  const double part = isfinite(b[0] - a[0]) ? 1 : 0.5; /* halves of differences that are too large */
+  const double whole = part * b[0] - part * a[0], w = (part * x - part * a[0]) / whole,
+               v = (part * b[0] - part * x) / whole;
   for (int k = 1; k < knots->width; ++k) values[k - 1] = v * a[k] + w * b[k];
 }
 
@@ -77,15 +79,17 @@ static TcOptics optics_limit(const Knots *extinction, const Knots *color, double
   return optics;
 }
 
-/* The distinct scalars of both lists. */
-static int64_t merge_knots(const Knots *a, const Knots *b, double *merged) {
+/* The scalars of both lists, those beyond ±limit brought there, that are distinct times 2^−exponent. */
+static int64_t merge_knots(const Knots *a, const Knots *b, double limit, int exponent, double *merged) {
   int64_t i = 0, j = 0, n = 0;
   while (i < a->count || j < b->count) {
     const double x = i < a->count ? a->data[i * a->width] : INFINITY, y = j < b->count ? b->data[j * b->width] : INFINITY;
-    const double next = x <= y ? x : y;
+    const double next = fmax(-limit, fmin(x <= y ? x : y, limit));
     if (x <= y) ++i;
     else ++j;
-    if (n == 0 || merged[n - 1] != next) merged[n++] = next;
+    if (n == 0 || ldexp(merged[n - 1], -exponent) != ldexp(next, -exponent))
+      ++n;
+    merged[n - 1] = next;
   }
   return n;
 }
@@ -195,19 +199,37 @@ static void look_at_pieces(TetcastTransferFunction *transfer) {
   }
 }
 
-static void make_pieces(TetcastTransferFunction *transfer) {
+/* In other units, and not above what is computed with. */
+static void scale_optics(TcOptics *optics, int length_exponent) {
+  optics->extinction = fmin(ldexp(optics->extinction, length_exponent), TC_LARGEST_EXTINCTION);
+  for (int k = 0; k < 3; ++k)
+    optics->color[k] = fmin(optics->color[k], TC_LARGEST_COLOR);
+}
+
+/* The pieces, scalars times 2^−value_exponent and lengths times 2^−length_exponent: powers of two, no bit changes. No
+ * scalar is beyond ±TC_LARGEST_SCALAR in these units: there, knots farther away are replaced by what holds at that
+ * limit, so that their distances don't overflow. */
+static void make_pieces(TetcastTransferFunction *transfer, int value_exponent, int length_exponent) {
   const Knots color = {transfer->color, transfer->color_count, 4};
   const Knots extinction = {transfer->extinction, transfer->extinction_count, 2};
-  const int64_t n = merge_knots(&color, &extinction, transfer->knots);
-  const double *x = transfer->knots;
+  const double limit = fmin(ldexp(TC_LARGEST_SCALAR, value_exponent), DBL_MAX);
+  const int64_t n = merge_knots(&color, &extinction, limit, value_exponent, transfer->knots);
+  double *x = transfer->knots;
   for (int64_t i = 0; i <= n; ++i) {
     TcPiece *piece = &transfer->piece[i];
-    piece->low = i > 0 ? x[i - 1] : -INFINITY;
-    piece->high = i < n ? x[i] : INFINITY;
     if (i > 0) piece->at_low = optics_limit(&extinction, &color, x[i - 1], limit_above);
     if (i < n) piece->at_high = optics_limit(&extinction, &color, x[i], limit_below);
     if (i == 0) piece->at_low = piece->at_high;
     if (i == n) piece->at_high = piece->at_low;
+    scale_optics(&piece->at_low, length_exponent);
+    scale_optics(&piece->at_high, length_exponent);
+  }
+  for (int64_t i = 0; i < n; ++i)
+    x[i] = ldexp(x[i], -value_exponent);
+  for (int64_t i = 0; i <= n; ++i) {
+    TcPiece *piece = &transfer->piece[i];
+    piece->low = i > 0 ? x[i - 1] : -INFINITY;
+    piece->high = i < n ? x[i] : INFINITY;
     const TcOptics *a = &piece->at_low, *b = &piece->at_high;
     piece->constant = a->extinction == b->extinction && a->color[0] == b->color[0] && a->color[1] == b->color[1] &&
                       a->color[2] == b->color[2];
@@ -251,7 +273,8 @@ static TetcastStatus check_desc(TetcastContext *context, const TetcastTransferFu
   return status;
 }
 
-TetcastStatus tc_transfer_create(TetcastContext *context, const TetcastTransferFunctionDesc *desc, TetcastTransferFunction **out) {
+static TetcastStatus create(TetcastContext *context, const TetcastTransferFunctionDesc *desc, int value_exponent,
+                            int length_exponent, TetcastTransferFunction **out) {
   const TetcastStatus status = check_desc(context, desc);
   if (status) return status;
   const int64_t count = desc->extinction ? desc->extinction_count : desc->opacity_count;
@@ -278,36 +301,28 @@ TetcastStatus tc_transfer_create(TetcastContext *context, const TetcastTransferF
     transfer->extinction[2 * i] = knot[0];
     transfer->extinction[2 * i + 1] = desc->extinction ? knot[1] : extinction_of(desc, knot[1]);
   }
-  make_pieces(transfer);
+  make_pieces(transfer, value_exponent, length_exponent);
   *out = transfer;
   return TETCAST_OK;
 }
 
-TetcastStatus tc_transfer_copy(TetcastContext *context, const TetcastTransferFunction *source, TetcastTransferFunction **out) {
-  const TetcastTransferFunctionDesc desc = {.color = source->color,
-                                            .color_count = source->color_count,
-                                            .extinction = source->extinction,
-                                            .extinction_count = source->extinction_count};
-  return tc_transfer_create(context, &desc, out);
+TetcastStatus tc_transfer_create(TetcastContext *context, const TetcastTransferFunctionDesc *desc,
+                                 TetcastTransferFunction **out) {
+  return create(context, desc, 0, 0, out);
 }
 
 TetcastStatus tc_transfer_rescale(TetcastContext *context, const TetcastTransferFunction *source, int value_exponent,
                                   int length_exponent, TetcastTransferFunction **out) {
-  const TetcastStatus status = tc_transfer_copy(context, source, out);
-  if (status) return status;
-  TetcastTransferFunction *copy = *out;
-  for (int64_t i = 0; i <= copy->pieces.count; ++i) { /* powers of two: no bit changes */
-    TcPiece *piece = &copy->piece[i];
-    piece->at_low.extinction = ldexp(piece->at_low.extinction, length_exponent);
-    piece->at_high.extinction = ldexp(piece->at_high.extinction, length_exponent);
-    if (value_exponent == 0) continue;
-    /* Only tiny fields are rescaled: a knot that would overflow is as far from them at 1e305. */
-    if (i > 0) copy->knots[i - 1] = fmax(-1e305, fmin(1e305, ldexp(copy->knots[i - 1], -value_exponent)));
-    if (i > 0) piece->low = copy->knots[i - 1];
-    if (i > 0) copy->piece[i - 1].high = copy->knots[i - 1];
-  }
-  look_at_pieces(copy);
-  return TETCAST_OK;
+  const TetcastTransferFunctionDesc desc = {.color = source->color,
+                                            .color_count = source->color_count,
+                                            .extinction = source->extinction,
+                                            .extinction_count = source->extinction_count};
+  return create(context, &desc, value_exponent, length_exponent, out);
+}
+
+TetcastStatus tc_transfer_copy(TetcastContext *context, const TetcastTransferFunction *source,
+                               TetcastTransferFunction **out) {
+  return tc_transfer_rescale(context, source, 0, 0, out);
 }
 
 void tc_transfer_destroy(TetcastTransferFunction *transfer) {

@@ -72,10 +72,20 @@ struct TetcastTransferFunction {
   TcPieces pieces;
 };
 
+/* What is larger counts as this: extinctions in the volume's unit of length, where no cell is longer than 4, and
+ * colours. So neither a segment's depth, nor its light, nor a sum of them over a ray and over all samples of a pixel
+ * overflows. */
+#define TC_LARGEST_EXTINCTION 0x1p1000
+#define TC_LARGEST_COLOR      0x1p500
+
+/* Bound on the magnitude of scalars as the volume stores them: interpolation between them doesn't overflow. */
+#define TC_LARGEST_SCALAR 0x1p1000
+
 TetcastStatus tc_transfer_create(TetcastContext *context, const TetcastTransferFunctionDesc *desc, TetcastTransferFunction **out);
 TetcastStatus tc_transfer_copy(TetcastContext *context, const TetcastTransferFunction *source, TetcastTransferFunction **out);
 
-/* A copy in other units: scalars times 2^−value_exponent, lengths times 2^−length_exponent, so extinction times 2^length_exponent. */
+/* A copy with pieces in other units: scalars times 2^−value_exponent, lengths times 2^−length_exponent, so extinction
+ * times 2^length_exponent. */
 TetcastStatus tc_transfer_rescale(TetcastContext *context, const TetcastTransferFunction *source, int value_exponent,
                                   int length_exponent, TetcastTransferFunction **out);
 void tc_transfer_destroy(TetcastTransferFunction *transfer);

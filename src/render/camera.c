@@ -7,6 +7,9 @@
 
 static const double DEGREE = 0.017453292519943295;
 
+/* In units of the mesh's size: squares of distances must not overflow. */
+#define TOO_FAR 0x1p500
+
 /* Makes v a unit vector; false if it has no direction. Scaled first, so that no unit overflows. */
 static bool normalize(double v[3]) {
   const double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
@@ -43,8 +46,7 @@ TetcastStatus tc_view_create(TetcastContext *context, const TetcastCamera *camer
     view->eye[k] = ldexp(camera->eye[k], -volume->exponent);
     view->forward[k] = 0.5 * camera->target[k] - 0.5 * camera->eye[k];
     view->up[k] = camera->up[k];
-    /* Squares of distances must not overflow. */
-    if (!(fabs(view->eye[k]) < 0x1p500)) {
+    if (!(fabs(view->eye[k]) < TOO_FAR)) {
       return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: the eye is too far from the mesh: %g", camera->eye[k]);
     }
   }
@@ -59,6 +61,10 @@ TetcastStatus tc_view_create(TetcastContext *context, const TetcastCamera *camer
   }
   tc_cross(view->right, view->forward, view->up);
   const double half = view->orthographic ? ldexp(0.5 * camera->height, -volume->exponent) : tan(0.5 * camera->fovy * DEGREE);
+  if (!(half * aspect < TOO_FAR && half < TOO_FAR)) {
+    return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: a height of %g is too large for the mesh",
+                    camera->height);
+  }
   for (int k = 0; k < 3; ++k) {
     view->right[k] *= half * aspect;
     view->up[k] *= half;

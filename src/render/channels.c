@@ -9,7 +9,7 @@ static double error_of(const TcGathered *g, int i) {
 }
 
 /* A quarter is gathered, in the volume's unit of length. */
-static double radiance_of(const TcGathered *g, int i) { return ldexp(g->sums[3 * i], g->exponent + 2); }
+static double radiance_of(const TcGathered *g, int i) { return ldexp(g->sums[3 * i], g->exponent + g->coefficients->emission_exponent); }
 static double optical_depth_of(const TcGathered *g, int i) { return g->sums[3 * i + 1]; }
 static double transmittance_of(const TcGathered *g, int i) { return g->sums[3 * i + 2]; }
 
@@ -33,8 +33,7 @@ double tc_gathered_pixel(const TcGathered *g, double rgba[4]) {
     return g->bounded ? g->sums[4] : NAN;
   }
   double mean = 0;
-  for (int i = 0; i < c->groups; ++i) mean += radiance_of(g, i);
-  mean /= c->groups;
+  for (int i = 0; i < c->groups; ++i) mean += radiance_of(g, i) / c->groups; /* the sum might overflow */
   for (int k = 0; k < 3; ++k) rgba[k] = c->groups == 3 ? radiance_of(g, k) : mean;
   rgba[3] = g->sums[3 * c->groups + 1];
   return g->bounded ? g->sums[3 * c->groups + 2] : NAN;

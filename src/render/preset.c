@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -13,12 +14,14 @@ static TetcastStatus measure(const TetcastScene *scene, const TcPieces *pieces, 
   TetcastContext *context = scene->context;
   TcLine *lines;
   double *sums;
+  TcJob job = {0};
+  tc_job_of(volume, scene->values, pieces, &job);
   if (!tc_allocate_array(context, (void **)&lines, 3 * GRID * GRID, sizeof *lines, "rays")) return TETCAST_ERROR_MEMORY;
-  if (!tc_allocate_array(context, (void **)&sums, 3 * GRID * GRID, 5 * sizeof *sums, "rays")) {
+  if (!tc_allocate_array(context, (void **)&sums, 3 * GRID * GRID, (size_t)job.sums * sizeof *sums, "rays")) {
     tc_release(context, lines);
     return TETCAST_ERROR_MEMORY;
   }
-  memset(sums, 0, 3 * GRID * GRID * 5 * sizeof *sums);
+  memset(sums, 0, 3 * GRID * GRID * (size_t)job.sums * sizeof *sums);
   for (int i = 0; i < 3 * GRID * GRID; ++i) {
     const int axis = i / (GRID * GRID), x = i % GRID, y = i / GRID % GRID;
     lines[i] = (TcLine){.direction = {axis == 0, axis == 1, axis == 2}, .end = INFINITY};
@@ -27,15 +30,13 @@ static TetcastStatus measure(const TetcastScene *scene, const TcPieces *pieces, 
     lines[i].offset[(axis + 2) % 3] = ((2 * y + 1.0) / GRID - 1) * volume->radius;
     lines[i].offset[axis] = -2 * volume->radius;
   }
-  TcJob job = {0};
-  tc_job_of(volume, scene->values, pieces, &job);
   const TcIsaKernels *kernels = tc_kernels_for(volume->traversal == TETCAST_TRAVERSAL_FACES ? TETCAST_ISA_SCALAR : TETCAST_ISA_AUTO);
   TcWorker worker;
   const bool ok = tc_worker_begin(context, kernels, &job, &worker) && kernels->cast(&job, lines, 3 * GRID * GRID, &worker, sums);
   tc_worker_end(context, &worker);
   *count = 0;
   for (int i = 0; i < 3 * GRID * GRID; ++i) {
-    const double depth = -log1p(-sums[5 * i + 3]); /* of at most 2: lengths and extinctions are that short and small */
+    const double depth = -log1p(-sums[job.sums * i + 3]); /* of at most 2: lengths and extinctions are that short and small */
     if (depth > 0) depths[(*count)++] = depth;
   }
   tc_release(context, lines);
@@ -81,7 +82,8 @@ static TetcastStatus find_extinction(const TetcastScene *scene, double low, doub
     factor = exp(lower);
   }
   *extinction = ldexp(factor, -volume->exponent);
-  if (!isfinite(*extinction)) *extinction = 1e300;
+  if (!isfinite(*extinction))
+    *extinction = DBL_MAX;
   return TETCAST_OK;
 }
 

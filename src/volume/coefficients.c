@@ -45,6 +45,19 @@ static TetcastStatus check_list(const TetcastVolume *volume, const List *list, b
 
 /* ── binding ── */
 
+/* The exponent of the largest emission. */
+static int emission_exponent(const List *emission) {
+  double largest = 0;
+  for (int i = 0; i < emission->count; ++i) {
+    double range[2];
+    tc_field_range(emission->fields[i], range, NULL);
+    largest = fmax(largest, fmax(fabs(range[0]), fabs(range[1])));
+  }
+  int exponent = 0;
+  if (largest > 0) frexp(largest, &exponent);
+  return exponent < -1000 ? -1000 : exponent; /* whose inverse power is a number */
+}
+
 /* The fields of one association, those of extinction first, and where each went. */
 static TetcastStatus bind_association(const TetcastVolume *volume, const List lists[2], TetcastAssociation association, int first_slot,
                                       int *const slots[2], TcRows **rows) {
@@ -71,6 +84,20 @@ static TetcastStatus bind_all(const TetcastVolume *volume, const List lists[2], 
   return status;
 }
 
+/* The exponent of the largest emission. */
+static int emission_exponent(const List *emission) {
+  double largest = 0;
+  for (int i = 0; i < emission->count; ++i) {
+    double range[2];
+    tc_field_range(emission->fields[i], range, NULL);
+    largest = fmax(largest, fmax(fabs(range[0]), fabs(range[1])));
+  }
+  int exponent = 0;
+  if (largest > 0)
+    frexp(largest, &exponent);
+  return exponent < -1000 ? -1000 : exponent; /* whose inverse power is a number */
+}
+
 TetcastStatus tc_coefficients_create(const TetcastVolume *volume, const TetcastCoefficientsDesc *desc, TcCoefficients **out) {
   const List lists[2] = {{desc->extinction_name ? desc->extinction_name : "extinction", desc->extinction, desc->extinction_count},
                          {desc->emission_name ? desc->emission_name : "emission", desc->emission, desc->emission_count}};
@@ -79,10 +106,15 @@ TetcastStatus tc_coefficients_create(const TetcastVolume *volume, const TetcastC
   if (status) return status;
   TcCoefficients *c;
   if (!tc_allocate_array(volume->context, (void **)&c, 1, sizeof *c, "coefficients")) return TETCAST_ERROR_MEMORY;
-  const int half = volume->exponent / 2;
-  *c = (TcCoefficients){.context = volume->context, .scale = {ldexp(1, half), ldexp(1, volume->exponent - half)},
-                        .extinction_count = desc->extinction_count, .emission_count = desc->emission_count,
-                        .groups = desc->extinction_count > desc->emission_count ? desc->extinction_count : desc->emission_count};
+  const int half = volume->exponent / 2, brightest = emission_exponent(&lists[1]);
+  *c = (TcCoefficients){.context = volume->context,
+                        .scale = {ldexp(1, half), ldexp(1, volume->exponent - half)},
+                        .emission_exponent = brightest,
+                        .emission_scale = ldexp(1, -brightest),
+                        .extinction_count = desc->extinction_count,
+                        .emission_count = desc->emission_count,
+                        .groups = desc->extinction_count > desc->emission_count ? desc->extinction_count
+                                                                                : desc->emission_count};
   status = bind_all(volume, lists, c);
   if (status) {
     tc_coefficients_destroy(c);

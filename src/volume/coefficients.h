@@ -5,6 +5,7 @@
 
 #include <tetcast/scene.h>
 
+#include "optics/transfer.h"
 #include "volume/rows.h"
 
 /* A slot is a place in the values at a place along a ray: those of points, then those of the cell. */
@@ -14,10 +15,10 @@ typedef struct TcCoefficients {
   int groups, extinction_count, emission_count;
   int *slots;      /* [2 groups]: that of each group's extinction, then of its emission; −1: none */
   double scale[2]; /* extinction times both is that of the volume's unit of length */
+  /* Emission is counted in this power of two, near the largest: times what an opaque segment lets out, it does not underflow. */
+  int emission_exponent;
+  double emission_scale; /* emission times this is in that unit */
 } TcCoefficients;
-
-/* Larger extinctions, in the volume's unit, count as this: a cell is shorter than 4, which leaves room for TC_LARGEST_DENSITY. */
-#define TC_LARGEST_EXTINCTION 0x1p1017
 
 /* A negative extinction is TETCAST_ERROR_DATA, fields of another size TETCAST_ERROR_ARGUMENT. */
 TetcastStatus tc_coefficients_create(const TetcastVolume *volume, const TetcastCoefficientsDesc *desc, TcCoefficients **out);

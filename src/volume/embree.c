@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The one file that knows Embree, 3.13 or 4. */
+#define _GNU_SOURCE /* sched_getaffinity */
 #include "volume/embree.h"
 
 #include <math.h>
-#include <stdio.h>
+#include <sched.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "base/parallel.h"
 
 #if TETCAST_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
@@ -23,6 +27,9 @@
  * building takes; queries find somewhat more that is not met, 2 to 4 % of a frame. */
 enum { PAIR = 2 };
 
+/* From so many of the caller's primitives on, several threads build. */
+enum { MANY = 1 << 16 };
+
 struct TcEmbree {
   TetcastContext *context;
   RTCDevice device;
@@ -32,6 +39,7 @@ struct TcEmbree {
   const void *user;
   uint32_t count;
   atomic_llong bytes;
+  atomic_int error; /* of building */
 };
 
 typedef struct Query {
@@ -101,11 +109,91 @@ static bool memory_monitor(void *user, ssize_t bytes, bool post) {
   return true;
 }
 
-static TetcastStatus device_error(const TcEmbree *embree) {
-  const enum RTCError error = rtcGetDeviceError(embree->device);
+/* ── building ── */
+
+/* Reading an error forgets it. What Embree notes it in, of each thread, is made at the first reading: not only when
+ * memory is short, where Embree would end the process. */
+static enum RTCError take_error(RTCDevice device) {
+  return rtcGetDeviceError(device);
+}
+
+static TetcastStatus report(TetcastContext *context, enum RTCError error) {
   if (error == RTC_ERROR_NONE) return TETCAST_OK;
-  if (error == RTC_ERROR_OUT_OF_MEMORY) return tc_error(embree->context, TETCAST_ERROR_MEMORY, "out of memory in Embree");
-  return tc_error(embree->context, TETCAST_ERROR_EMBREE, "Embree reports error %d", (int)error);
+  if (error == RTC_ERROR_OUT_OF_MEMORY)
+    return tc_error(context, TETCAST_ERROR_MEMORY, "out of memory in Embree");
+  return tc_error(context, TETCAST_ERROR_EMBREE, "Embree reports error %d", (int)error);
+}
+
+/* Where memory is short, it is refused here rather than beneath Embree and TBB, which can't bear that at every place:
+ * what building takes is tried first. 16 MiB for what the two make once; a primitive takes 72 bytes at the most, as
+ * measured. */
+static bool memory_suffices(int64_t count) {
+  void *reserve = malloc(((size_t)16 << 20) + 96 * (size_t)count);
+  free(reserve);
+  return reserve != NULL;
+}
+
+static TetcastStatus make_scene(TcEmbree *embree) {
+  embree->scene = rtcNewScene(embree->device);
+  TetcastStatus status = report(embree->context, take_error(embree->device));
+  if (status)
+    return status;
+  rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST);
+  RTCGeometry geometry = rtcNewGeometry(embree->device, RTC_GEOMETRY_TYPE_USER);
+  status = report(embree->context, take_error(embree->device));
+  if (status)
+    return status;
+  rtcSetGeometryUserPrimitiveCount(geometry, (embree->count + PAIR - 1) / PAIR);
+  rtcSetGeometryUserData(geometry, embree);
+  rtcSetGeometryBoundsFunction(geometry, bounds_function, NULL);
+  rtcSetGeometryIntersectFunction(geometry, intersect_function);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(embree->scene, geometry);
+  rtcReleaseGeometry(geometry);
+  return report(embree->context, take_error(embree->device));
+}
+
+/* Threads that may build: no more than TBB counts processors, so that each finds a place, and one where there is little
+ * to do. */
+static int builders(const TcEmbree *embree) {
+  int threads = tc_context_threads(embree->context), processors = 1;
+  cpu_set_t set;
+  if (sched_getaffinity(0, sizeof set, &set) == 0)
+    processors = CPU_COUNT(&set);
+  if (embree->count < MANY)
+    threads = 1;
+  return threads < processors ? threads : processors;
+}
+
+static bool build(void *data, int64_t begin, int64_t end, int worker) {
+  (void)begin, (void)end, (void)worker;
+  TcEmbree *embree = data;
+  take_error(embree->device);
+  rtcJoinCommitScene(embree->scene);
+  const enum RTCError error = take_error(embree->device);
+  if (error != RTC_ERROR_NONE)
+    atomic_store(&embree->error, (int)error);
+  return true;
+}
+
+/* Threads are ours, which join in: TBB, were it to start one that the system refuses, would end the process. Its arena
+ * has no places but for such guests. */
+static TetcastStatus make(TcEmbree *embree) {
+  if (!memory_suffices(embree->count))
+    return tc_error(embree->context, TETCAST_ERROR_MEMORY, "out of memory: Embree");
+  take_error(NULL);
+  embree->device = rtcNewDevice("user_threads=4096,set_affinity=0");
+  if (!embree->device) {
+    const enum RTCError error = take_error(NULL);
+    return report(embree->context, error == RTC_ERROR_NONE ? RTC_ERROR_UNKNOWN : error);
+  }
+  take_error(embree->device);
+  rtcSetDeviceMemoryMonitorFunction(embree->device, memory_monitor, embree);
+  const TetcastStatus status = make_scene(embree);
+  if (status)
+    return status;
+  tc_parallel_for(embree->context, builders(embree), 1, build, embree, NULL);
+  return report(embree->context, (enum RTCError)atomic_load(&embree->error));
 }
 
 TetcastStatus tc_embree_create(TetcastContext *context, int64_t count, const double center[3], double radius,
@@ -120,28 +208,8 @@ TetcastStatus tc_embree_create(TetcastContext *context, int64_t count, const dou
   embree->user = user;
   embree->count = (uint32_t)count;
   atomic_init(&embree->bytes, 0);
-  char config[64];
-  snprintf(config, sizeof config, "threads=%d,set_affinity=0", tc_context_threads(context));
-  embree->device = rtcNewDevice(config);
-  if (!embree->device) {
-    const TetcastStatus status =
-      tc_error(context, TETCAST_ERROR_EMBREE, "Embree can't start: error %d", (int)rtcGetDeviceError(NULL));
-    tc_release(context, embree);
-    return status;
-  }
-  rtcSetDeviceMemoryMonitorFunction(embree->device, memory_monitor, embree);
-  embree->scene = rtcNewScene(embree->device);
-  rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST);
-  RTCGeometry geometry = rtcNewGeometry(embree->device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, (embree->count + PAIR - 1) / PAIR);
-  rtcSetGeometryUserData(geometry, embree);
-  rtcSetGeometryBoundsFunction(geometry, bounds_function, NULL);
-  rtcSetGeometryIntersectFunction(geometry, intersect_function);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(embree->scene, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(embree->scene);
-  const TetcastStatus status = device_error(embree);
+  atomic_init(&embree->error, (int)RTC_ERROR_NONE);
+  const TetcastStatus status = make(embree);
   if (status) {
     tc_embree_destroy(embree);
     return status;
@@ -152,8 +220,10 @@ TetcastStatus tc_embree_create(TetcastContext *context, int64_t count, const dou
 
 void tc_embree_destroy(TcEmbree *embree) {
   if (!embree) return;
-  rtcReleaseScene(embree->scene);
-  rtcReleaseDevice(embree->device);
+  if (embree->scene)
+    rtcReleaseScene(embree->scene);
+  if (embree->device)
+    rtcReleaseDevice(embree->device);
   tc_release(embree->context, embree);
 }
 

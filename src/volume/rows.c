@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "mesh/mesh.h"
+#include "optics/transfer.h"
 
 enum { GRAIN = 1 << 14, CLUSTER_GRAIN = 256, AHEAD = 32 };
 
@@ -95,8 +96,7 @@ typedef struct Take {
 
 static double kept(const Take *take, double value) {
   if (!isfinite(value)) return (double)NAN;
-  if (fabs(value) <= TC_LARGEST_VALUE) return value * take->scale;
-  return take->clamp ? copysign(TC_LARGEST_VALUE, value) : (double)NAN;
+  return take->clamp ? fmax(-TC_LARGEST_VALUE, fmin(value, TC_LARGEST_VALUE)) : value * take->scale;
 }
 
 /* Corners: four values of the mesh's cell, in the order of its vertices here. */
@@ -212,14 +212,15 @@ TetcastStatus tc_rows_of_scalar(const TetcastVolume *volume, const TetcastField 
   double range[2];
   tc_field_range(field, range, NULL);
   const double largest = fmax(fabs(range[0]), fabs(range[1]));
-  const int exponent = largest > 0 && largest < ldexp(1, -TC_TINY_FIELD) ? -TC_TINY_FIELD : 0;
+  const bool tiny = largest > 0 && largest < ldexp(1, -TC_TINY_FIELD);
+  const int exponent = tiny ? -TC_TINY_FIELD : largest > TC_LARGEST_SCALAR ? TC_HUGE_FIELD : 0;
   Take take = {.fields = &field, .scale = ldexp(1, -exponent)};
   TcRows *rows;
   const TetcastStatus status = create(volume, &take, field->association == TETCAST_CORNER ? 4 : 1, &rows);
   if (status) return status;
   rows->exponent = exponent;
   rows->serial = serial;
-  rows->largest = fmin(largest * take.scale, TC_LARGEST_VALUE);
+  rows->largest = largest * take.scale;
   const int64_t clusters = volume->clusters.seeds ? volume->clusters.count : 0;
   if (clusters > 0 && !tc_allocate_array(volume->context, (void **)&rows->range, clusters, sizeof *rows->range, "ranges of a field")) {
     destroy(rows);

@@ -6,11 +6,12 @@
 
 #include "volume/volume.h"
 
-/* Values of larger magnitude count as infinite: differences of two of them could overflow. */
-#define TC_LARGEST_VALUE 0x1p1022
+/* A scalar whose values are all below 2^−TC_TINY_FIELD is stored times 2^TC_TINY_FIELD, so that interpolation does not underflow; one with a value above
+ * TC_LARGEST_SCALAR times 2^−TC_HUGE_FIELD, so that it does not overflow. */
+enum { TC_TINY_FIELD = 500, TC_HUGE_FIELD = 64 };
 
-/* A scalar whose values are all below 2^−TC_TINY_FIELD is stored times 2^TC_TINY_FIELD, so that interpolation does not underflow. */
-#define TC_TINY_FIELD 500
+/* Other values of larger magnitude count as this. */
+#define TC_LARGEST_VALUE 0x1p1022
 
 typedef struct TcRows {
   const TetcastVolume *volume;
@@ -18,7 +19,7 @@ typedef struct TcRows {
   int width;        /* numbers in a row, one of each field */
   bool is_double;   /* or float, which they are when all fields came as that */
   int64_t count;    /* rows: vertices or cells of the volume */
-  void *data;       /* [count][width]; what is not finite, or too large, is NaN */
+  void *data;       /* [count][width]; what is not finite is NaN */
 
   /* Of a scalar that is seen through a transfer function: */
   int exponent;      /* stored times 2^−exponent */

@@ -590,9 +590,18 @@ static void wrong_descriptions_are_refused(void **) {
 
 static void pictures_too_large_for_a_format_are_refused(void **) {
   clear_folder();
-  const int64_t sides[] = {65501, 1000001, 65536, 16384};
-  const char *const names[] = {"a.jpg", "a.png", "a.tga", "a.webp"};
-  for (int i = 0; i < 4; i++) {
+  std::vector<int64_t> sides = {65501, 65536, 16384};
+  std::vector<const char *> names = {"a.jpg", "a.tga", "a.webp"};
+#if OIIO_VERSION >= OIIO_MAKE_VERSION(2, 5, 0) // where OpenImageIO limits what the formats don't
+  for (const char *name : {"a.png", "a.bmp", "a.ppm"}) {
+    sides.push_back(65536);
+    names.push_back(name);
+  }
+#else
+  sides.push_back(1000001);
+  names.push_back("a.png");
+#endif
+  for (size_t i = 0; i < sides.size(); i++) {
     std::vector<double> pixels(size_t(sides[i]) * 4);
     for (const bool wide : {false, true}) {
       Listener listener;

@@ -79,7 +79,7 @@ done
 check tetcast.c $above
 check cli
 for adapter in src/io/*/; do
-  check "io/$(basename "$adapter")"
+  check "io/$(basename "$adapter")" io/floating.hpp
 done
 for folder in src/*/; do
   case " $core io cli " in

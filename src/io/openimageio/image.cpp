@@ -9,10 +9,13 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <system_error>
+#include <thread>
 #include <vector>
 
 #include <OpenImageIO/imageio.h>
 
+#include "io/floating.hpp"
 #include "output.hpp"
 
 using OIIO::ImageOutput;
@@ -106,10 +109,16 @@ struct Format {
   int64_t limit; // pixels a side
 };
 
-constexpr Format formats[] = {
-    {"png", TypeDesc::UINT8, 1000000}, {"openexr", TypeDesc::HALF, 1 << 20}, {"tiff", TypeDesc::FLOAT, 1 << 20},
-    {"jpeg", TypeDesc::UINT8, 65500},  {"bmp", TypeDesc::UINT8, 1 << 20},    {"targa", TypeDesc::UINT8, 65535},
-    {"webp", TypeDesc::UINT8, 16383},  {"pnm", TypeDesc::UINT8, 1 << 20},    {"hdr", TypeDesc::FLOAT, 1 << 20}};
+// From 2.5 on, OpenImageIO itself has a limit for PNG, BMP and PNM, below what the formats or libpng have.
+constexpr int64_t limited(int64_t limit) {
+  return OIIO_VERSION >= OIIO_MAKE_VERSION(2, 5, 0) ? 65535 : limit;
+}
+
+constexpr Format formats[] = {{"png", TypeDesc::UINT8, limited(1000000)}, {"openexr", TypeDesc::HALF, 1 << 20},
+                              {"tiff", TypeDesc::FLOAT, 1 << 20},         {"jpeg", TypeDesc::UINT8, 65500},
+                              {"bmp", TypeDesc::UINT8, limited(1 << 20)}, {"targa", TypeDesc::UINT8, 65535},
+                              {"webp", TypeDesc::UINT8, 16383},           {"pnm", TypeDesc::UINT8, limited(1 << 20)},
+                              {"hdr", TypeDesc::FLOAT, 1 << 20}};
 
 const Format &find_format(TetcastContext *context, const char *path, std::unique_ptr<ImageOutput> &output) {
   const std::string extension = extension_of(path);
@@ -120,6 +129,8 @@ const Format &find_format(TetcastContext *context, const char *path, std::unique
   for (const Format &format : formats)
     if (output && !std::strcmp(output->format_name(), format.name))
       return format;
+  if (extension == "exr") // OpenEXR starts threads before it knows what for
+    std::thread([] {}).join();
   fail(context, TETCAST_ERROR_ARGUMENT, path,
        "images of format '." + extension + "' are not supported; .png .exr .tif .jpg are");
 }
@@ -348,6 +359,7 @@ void write_picture(TetcastContext *context, const char *path, const Pixels &pixe
 
 TetcastStatus guarded(TetcastContext *context, const char *path, const Pixels &pixels, const TetcastImageDesc *given,
                       bool publish) {
+  const FloatingPoint guard;
   const TetcastImageDesc desc = given ? *given : tetcast_image_desc_default();
   if (desc.cookie != desc_cookie)
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
@@ -368,6 +380,11 @@ TetcastStatus guarded(TetcastContext *context, const char *path, const Pixels &p
     return failure.status;
   } catch (const std::bad_alloc &) {
     return tetcast_context_error(context, TETCAST_ERROR_MEMORY, "cannot write image '%s': out of memory", path);
+  } catch (const std::system_error &error) {
+    const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
+    return tetcast_context_error(
+        context, TETCAST_ERROR_IO, "cannot write image '%s': %s%s", path, error.what(),
+        no_thread ? ": OpenImageIO needs a thread of its own for this format; .png and .jpg don't" : "");
   } catch (const std::exception &error) {
     return tetcast_context_error(context, TETCAST_ERROR_IO, "cannot write image '%s': %s", path, error.what());
   } catch (...) {

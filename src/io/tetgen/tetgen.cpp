@@ -15,6 +15,8 @@
 #include <tetgen.h>
 #undef terminatetetgen
 
+#include "io/floating.hpp"
+
 // TetGen 1.5 ends failures here: its own version frees the mesh and throws, whereupon the mesh's destructor frees it
 // again. This one comes before it when the dynamic linker looks the name up.
 __attribute__((visibility("default"))) void terminatetetgen(tetgenmesh *, int code);
@@ -239,6 +241,7 @@ void check_desc(const TetcastTetgenDesc &desc) {
 // Runs `work(desc)` and turns whatever it throws into a status and a message.
 template <typename Work>
 TetcastStatus fenced(TetcastContext *context, const TetcastTetgenDesc *desc, TetcastMesh **mesh, Work work) {
+  const FloatingPoint guard;
   if (!mesh) {
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "mesh is NULL");
   }

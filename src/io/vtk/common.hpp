@@ -13,6 +13,8 @@
 #include <tetcast/context.h>
 #include <tetcast/status.h>
 
+#include "io/floating.hpp"
+
 class vtkCellArray;
 class vtkDataArray;
 class vtkPoints;
@@ -29,6 +31,7 @@ struct Failure {
 
 // Runs `body`; no exception leaves it. `path` names the file in messages that come from no Failure.
 template <typename Body> TetcastStatus fence(TetcastContext *context, const char *path, Body &&body) noexcept {
+  const FloatingPoint guard;
   try {
     body();
     return TETCAST_OK;

@@ -122,6 +122,7 @@ TetcastDatasetDesc tetcast_dataset_desc_default(void) {
 }
 
 TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, const TetcastDatasetDesc *desc, TetcastDataset **dataset) {
+  const FloatingPoint guard;
   if (dataset) *dataset = nullptr;
   if (!context || !path || !dataset) {
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
