@@ -33,6 +33,8 @@ typedef struct TetcastDatasetDesc {
   bool cell_to_point;     /* fields of cell arrays are of points: at each the plain mean over the file's cells that use it, component by
                            * component; only volumetric cells count, and not those whose value is NaN or infinite */
   int subdivision;        /* what each edge of a curved cell is cut into, to TETCAST_MAX_SUBDIVISION; 0: as its nodes lie */
+  bool no_displacement;   /* points are where an Exodus file has them at first; else they are moved by its displacements of the step: the first
+                           * vector of the points whose name begins with "dis", in any case of letters */
 } TetcastDatasetDesc;
 
 /* All blocks, the first step, no tolerance, curved cells cut as their nodes lie. */
@@ -65,6 +67,7 @@ TETCAST_API bool tetcast_dataset_cell_type(const TetcastDataset *dataset, int i,
 
 typedef struct TetcastDatasetArray {
   const char *name;               /* valid while the dataset lives */
+  const char *selector;           /* what selects it, see tetcast_dataset_field(): its name, or "NAME:cell" where that is a point array's; as long */
   TetcastAssociation association; /* of points or cells */
   int components;                 /* ≥ 1 */
   const char *type;               /* as the file has it, e.g. "float64", "int32"; static storage */

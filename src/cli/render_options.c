@@ -45,7 +45,7 @@ static const struct {
 } table[OPTION_COUNT] = {
     [OPTION_INPUT] = {"input", KIND_PATH, AT(input), .form = "expected a path"},
     [OPTION_OUTPUT] = {"output", KIND_PATH, AT(output), .form = "expected a path"},
-    [OPTION_ARRAY] = {"array", KIND_TEXT, AT(array), .excludes = DIRECT, .form = "expected NAME, NAME:component or NAME:mag"},
+    [OPTION_ARRAY] = {"array", KIND_TEXT, AT(array), .excludes = DIRECT, .form = "expected NAME, NAME:point, NAME:cell, NAME:component or NAME:mag"},
     [OPTION_BLOCK] = {"block", KIND_TEXT, AT(block), .form = "expected the name of a block"},
     [OPTION_TIME] = {"time", KIND_TEXT, AT(time), .form = "expected a step, from 0 (or -1, the last, and back), t=TIME, or all"},
     [OPTION_MERGE_TOLERANCE] = {"merge-tolerance", KIND_NUMBERS, AT(merge_tolerance), 1, 1, 0, DBL_MAX,
@@ -53,6 +53,7 @@ static const struct {
     [OPTION_CELL_TO_POINT] = {"cell-to-point", KIND_FLAG, AT(cell_to_point), .form = "expected true or false"},
     [OPTION_SUBDIVIDE] = {"subdivide", KIND_INTEGERS, AT(subdivide), 1, 1, 0, TETCAST_MAX_SUBDIVISION,
                           .form = "expected a whole number from 1 to 16, or 0: as the nodes lie"},
+    [OPTION_NO_DISPLACEMENT] = {"no-displacement", KIND_FLAG, AT(no_displacement), .form = "expected true or false"},
     [OPTION_TRANSFER] = {"transfer", KIND_PATH, AT(transfer), .excludes = BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | DIRECT,
                          .form = "expected a transfer function or the path of one"},
     [OPTION_PRESET] = {"preset", KIND_TEXT, AT(preset), .excludes = BIT(OPTION_TRANSFER) | DIRECT, .form = "expected a name"},

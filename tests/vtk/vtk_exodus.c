@@ -1,28 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Exodus files: what they hold, and what becomes of damaged ones. */
 #include <math.h>
-#include <stdatomic.h>
-#include <sys/ioctl.h>
-#include <sys/mman.h>
-#include <sys/syscall.h>
 
 #include "common.h"
-
-/* Children that are to wait for ever, as for a lock that nobody gives back. */
-static atomic_int *waiting;
-static pid_t parent;
-
-/* The library's children call this at their end; it stands in front of libc's. */
-TETCAST_API int ioctl(int file, unsigned long request, ...) {
-  va_list list;
-  va_start(list, request);
-  void *argument = va_arg(list, void *);
-  va_end(list);
-  while (waiting && getpid() != parent && atomic_fetch_sub(waiting, 1) > 0) {
-    for (;;) pause();
-  }
-  return (int)syscall(SYS_ioctl, file, request, argument);
-}
 
 static void test_same_as_vtu(void **state) {
   Fixture *fixture = *state;
@@ -98,27 +78,7 @@ static void test_flipped_bits(void **state) {
   free(changed);
 }
 
-/* A child that is stuck is followed by another, but not without end. */
-static void test_stuck(void **state) {
-  Fixture *fixture = *state;
-  size_t size;
-  char *bytes = contents(data_path(fixture, "defects/mug.e"), &size);
-  parent = getpid();
-  waiting = mmap(NULL, sizeof *waiting, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  assert_ptr_not_equal(waiting, MAP_FAILED);
-  atomic_init(waiting, 1);
-  assert_int_equal(attempt(fixture, bytes, size), TETCAST_OK);
-  assert_true(*waiting <= 0);
-  *waiting = 100;
-  assert_int_equal(attempt(fixture, bytes, size), TETCAST_ERROR_IO);
-  assert_non_null(strstr(fixture->message, "locks"));
-  assert_int_equal(*waiting, 97);
-  *waiting = 0;
-  assert_int_equal(attempt(fixture, bytes, size), TETCAST_OK);
-  free(bytes);
-}
-
 int main(void) {
-  const struct CMUnitTest tests[] = {TEST(test_same_as_vtu), TEST(test_blocks), TEST(test_truncation), TEST(test_flipped_bits), TEST(test_stuck)};
+  const struct CMUnitTest tests[] = {TEST(test_same_as_vtu), TEST(test_blocks), TEST(test_truncation), TEST(test_flipped_bits)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -209,7 +209,7 @@ static void test_errors(void **state) {
   } cases[] = {
     {"$MeshFormat\n4 0 8\n$EndMeshFormat\n", TETCAST_ERROR_UNSUPPORTED, "version 4 of Gmsh's format"},
     {"$MeshFormat\n1 0 8\n$EndMeshFormat\n", TETCAST_ERROR_UNSUPPORTED, "version 1 of"},
-    {"$MeshFormat\n2.2 0 4\n$EndMeshFormat\n", TETCAST_ERROR_DATA, "numbers of 8 bytes"},
+    {"$MeshFormat\n2.2 1 4\n$EndMeshFormat\n", TETCAST_ERROR_DATA, "numbers of 8 bytes"},
     {"$MeshFormat\n2.2 0", TETCAST_ERROR_DATA, "line 2: truncated: the size of numbers is to come"},
     {HEAD, TETCAST_ERROR_DATA, "holds no elements"},
     {HEAD "$Nodes\n1152921504606846976\n1 0 0 0\n$EndNodes\n", TETCAST_ERROR_DATA, "line 5: claims 1152921504606846976 nodes"},
