@@ -29,7 +29,7 @@ typedef struct TetcastDatasetDesc {
   double merge_tolerance; /* negative: only points of different pieces are merged, where they coincide exactly. Else all points no
                              further than this apart, in the file's unit of length; 0: all that coincide exactly */
   const char *only;       /* of the arrays none is read but those that this selector may name, see tetcast_dataset_field(), where the format
-                           * lets one choose (VTK XML, Exodus); NULL: all */
+                           * lets one choose (all but legacy .vtk); NULL: all */
   bool cell_to_point;     /* fields of cell arrays are of points: at each the plain mean over the file's cells that use it, component by
                            * component; only volumetric cells count, and not those whose value is NaN or infinite */
   int subdivision;        /* what each edge of a curved cell is cut into, to TETCAST_MAX_SUBDIVISION; 0: as its nodes lie */

@@ -2,7 +2,7 @@
 /* Runs the command over changed files, for as long as it is told: command COMMAND FOLDER SECONDS SEED FILE…
  *
  * Each of the files is valid; one is taken, changed at random, written to FOLDER and read by `COMMAND info` or `COMMAND render`. The command
- * has to end within ten seconds by itself, with status 0, or with 1 and one line that begins "tetcast: error:"; what ends as an error may
+ * has to end by itself, after no more than ten seconds of a processor and a minute in all, with status 0, or with 1 and one line that begins "tetcast: error:"; what ends as an error may
  * take no more memory than four times the file and 256 MB. What breaks this is kept in FOLDER, as found-0, found-1 …, and told of. */
 #include <errno.h>
 #include <fcntl.h>
@@ -19,7 +19,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { PATIENCE = 10, MEGABYTE = 1 << 20 };
+enum { PROCESSOR_SECONDS = 10, PATIENCE = 60 };
 
 static uint64_t state;
 
@@ -160,7 +160,8 @@ static void become(const char *command, const char *folder, const char *file, bo
   const int nothing = open("/dev/null", O_WRONLY), errors = open(error_path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
   dup2(nothing, 1);
   dup2(errors, 2);
-  const struct rlimit space = {(rlim_t)16 << 30, (rlim_t)16 << 30}, cores = {0, 0};
+  const struct rlimit space = {(rlim_t)16 << 30, (rlim_t)16 << 30}, cores = {0, 0}, time = {PROCESSOR_SECONDS, PROCESSOR_SECONDS + 1};
+  setrlimit(RLIMIT_CPU, &time);
 #ifndef __SANITIZE_ADDRESS__
   setrlimit(RLIMIT_AS, &space);
 #else
@@ -209,7 +210,7 @@ static Outcome run(const char *command, const char *folder, const char *file, bo
 
 /* What is wrong with how it ended; NULL: nothing. */
 static const char *fault_of(const Outcome *outcome, size_t size) {
-  if (outcome->late) return "does not end";
+  if (outcome->late || (WIFSIGNALED(outcome->status) && (WTERMSIG(outcome->status) == SIGXCPU))) return "does not end";
   if (WIFSIGNALED(outcome->status)) return "crashes";
   const int code = WEXITSTATUS(outcome->status);
   if (code == 0) return outcome->errors ? "an error, and status 0" : NULL;

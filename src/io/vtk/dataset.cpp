@@ -74,7 +74,8 @@ static void report_unread(const TetcastDataset *dataset, const char *only) {
   std::string names;
   int count = 0;
   for (const UnreadArray &one : dataset->unread) {
-    if (one.reason.empty() || (only && !dataset->arrays.empty() && !has_array(dataset, one.array))) continue;
+    const bool asked_for = may_name(only, one.array.name) && (!only || has_array(dataset, one.array));
+    if (one.reason.empty() || (!asked_for && !dataset->arrays.empty())) continue;
     first = first ? first : &one;
     names += (names.empty() ? "'" : ", '") + one.array.name + "'";
     ++count;

@@ -83,7 +83,7 @@ static const Array *find_named(const TetcastDataset *dataset, const std::string 
 
 // Fails, and says what there is instead, or why it can't be read.
 [[noreturn]] static void unknown(const TetcastDataset *dataset, const std::string &selector) {
-  std::string list;
+  std::string list; // of all there are
   for (const Array &array : dataset->arrays) {
     const int components = array.data->GetNumberOfComponents();
     std::string about = array.association == TETCAST_CELL ? "cells" : "";
@@ -91,7 +91,9 @@ static const Array *find_named(const TetcastDataset *dataset, const std::string 
     list += (list.empty() ? "" : ", ") + array.name + (about.empty() ? "" : " (" + about + ")");
   }
   for (const UnreadArray &one : dataset->unread) {
-    if (one.reason.empty()) list += (list.empty() ? "" : ", ") + one.array.name + (one.array.association == TETCAST_CELL ? " (cells)" : "");
+    const bool cells = one.array.association == TETCAST_CELL;
+    const char *about = one.reason.empty() ? (cells ? " (cells)" : "") : (cells ? " (cells, can't be read)" : " (can't be read)");
+    list += (list.empty() ? "" : ", ") + one.array.name + about;
     if (one.reason.empty() || !may_name(selector.c_str(), one.array.name)) continue;
     fail(TETCAST_ERROR_DATA, "%s: %s array '%s' can't be read: %s", dataset->path.c_str(), word_of(one.array.association), one.array.name.c_str(),
          one.reason.c_str());

@@ -135,6 +135,8 @@ private:
   void add_element(const ElementType &type, int64_t tag, int64_t group);
   const ElementType &type_of(int64_t id) const;
   void read_section(const std::string &name, Section::Kind kind);
+  void try_section(const std::string &name, Section::Kind kind, tcv::Contents *contents);
+  std::string reason_of(const tcv::Failure &failure) const;
   void add_views(vtkUnstructuredGrid *grid, tcv::Contents *contents);
   vtkSmartPointer<vtkDoubleArray> values_of(Section *section);
   void read_corner_values(Section *section, vtkDoubleArray *array);
@@ -154,6 +156,7 @@ private:
   int64_t last_group_ = 0;
   std::vector<int64_t> list_; // the nodes of an element
   std::vector<Section> sections_;
+  std::string section_name_; // of the array that the section being read is of, for messages
 };
 
 // ── the mesh ──
@@ -343,7 +346,7 @@ void Reader::read_section(const std::string &name, Section::Kind kind) {
     if (in_.left() == 0) in_.fail("truncated: a name is to come");
     const std::string text = in_.line();
     const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
-    if (i == 0) section.name = quoted ? text.substr(1, text.size() - 2) : text;
+    if (i == 0) section_name_ = section.name = quoted ? text.substr(1, text.size() - 2) : text;
   }
   const int64_t reals = in_.text_integer("a number of times");
   for (int64_t i = 0; i < reals; ++i) {
@@ -418,6 +421,25 @@ vtkSmartPointer<vtkDoubleArray> Reader::values_of(Section *section) {
   return array;
 }
 
+// What failed without the file's name.
+std::string Reader::reason_of(const tcv::Failure &failure) const {
+  const std::string place = reading_.path + ": ";
+  return failure.text.compare(0, place.size(), place) == 0 ? failure.text.substr(place.size()) : failure.text;
+}
+
+// A section of values, which the mesh is not in need of.
+void Reader::try_section(const std::string &name, Section::Kind kind, tcv::Contents *contents) {
+  const tcv::GmshCursor begin = in_;
+  section_name_ = "$" + name;
+  try {
+    read_section(name, kind);
+  } catch (const tcv::Failure &failure) {
+    in_ = begin;
+    in_.skip_section(name); // which fails where it does not end
+    tcv::note_unread(&contents->unread, {kind == Section::OF_ELEMENTS ? TETCAST_CELL : TETCAST_POINT, section_name_}, reason_of(failure));
+  }
+}
+
 // Of each view the last section that is not after the step; its first, if all are.
 void Reader::add_views(vtkUnstructuredGrid *grid, tcv::Contents *contents) {
   for (const Section &section : sections_) contents->times.push_back(section.time);
@@ -433,9 +455,19 @@ void Reader::add_views(vtkUnstructuredGrid *grid, tcv::Contents *contents) {
     else if (section.time <= now) *found = &section;
   }
   for (Section *section : wanted) {
-    const auto array = values_of(section);
-    if (section->kind == Section::OF_ELEMENTS) grid->GetCellData()->AddArray(array);
-    else grid->GetPointData()->AddArray(array);
+    const bool of_elements = section->kind == Section::OF_ELEMENTS;
+    const tcv::ArrayName name = {of_elements ? TETCAST_CELL : TETCAST_POINT, section->name};
+    if (!tcv::may_name(reading_.desc->only, name.name)) {
+      tcv::note_unread(&contents->unread, name, "");
+      continue;
+    }
+    try {
+      const auto array = values_of(section);
+      if (of_elements) grid->GetCellData()->AddArray(array);
+      else grid->GetPointData()->AddArray(array);
+    } catch (const tcv::Failure &failure) {
+      tcv::note_unread(&contents->unread, name, reason_of(failure));
+    }
   }
 }
 
@@ -460,9 +492,9 @@ void Reader::read(tcv::Contents *contents) {
     else if (name == (first() ? "NOD" : "Nodes")) read_nodes();
     else if (name == (first() ? "ELM" : "Elements")) read_elements();
     else {
-      if (name == "NodeData") read_section(name, Section::OF_NODES);
-      else if (name == "ElementData") read_section(name, Section::OF_ELEMENTS);
-      else if (name == "ElementNodeData") read_section(name, Section::OF_ELEMENTS_NODES);
+      if (name == "NodeData") try_section(name, Section::OF_NODES, contents);
+      else if (name == "ElementData") try_section(name, Section::OF_ELEMENTS, contents);
+      else if (name == "ElementNodeData") try_section(name, Section::OF_ELEMENTS_NODES, contents);
       else in_.skip_section(name);
       continue;
     }
@@ -471,7 +503,9 @@ void Reader::read(tcv::Contents *contents) {
   if (types_->GetNumberOfValues() == 0) in_.fail("holds no elements; truncated?");
   const tcv::Grid grid = make_grid();
   add_views(grid, contents);
-  if (grouped_) {
+  if (grouped_ && !tcv::may_name(reading_.desc->only, "physical")) {
+    tcv::note_unread(&contents->unread, {TETCAST_CELL, "physical"}, "");
+  } else if (grouped_) {
     physical_->SetName("physical");
     grid->GetCellData()->AddArray(physical_);
   }

@@ -27,13 +27,12 @@ bool NumberReader::next_word() {
 
 // "1.5d3", "1.#INF", "-1.#IND": what Fortran, and C on Windows, make of numbers. Changes the word.
 static bool parse_foreign(std::string *word, double *value) {
-  const size_t exponent = word->find_first_of("dD");
-  if (exponent != std::string::npos && exponent > 0) {
+  const size_t mark = word->find('#'), exponent = word->find_first_of("dD");
+  if (mark == std::string::npos) {
+    if (exponent == std::string::npos || exponent == 0) return false;
     (*word)[exponent] = 'e';
     return parse_number(word->data(), word->data() + word->size(), value);
   }
-  const size_t mark = word->find("#");
-  if (mark == std::string::npos) return false;
   const std::string kind = word->substr(mark + 1, 3);
   if (kind != "INF" && kind != "IND" && kind != "QNA" && kind != "SNA") return false;
   *value = kind == "INF" ? ((*word)[0] == '-' ? -HUGE_VAL : HUGE_VAL) : std::numeric_limits<double>::quiet_NaN();
