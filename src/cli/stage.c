@@ -47,6 +47,16 @@ static void tell_choice(const Stage *stage) {
   free(others);
 }
 
+/* The one array that is asked for; NULL: the default, or several. That of the step before is not chosen anew. */
+static const char *only_array(const Stage *stage, const RenderOptions *options) {
+  const char *extinction = options->extinction, *emission = options->emission;
+  if (!render_options_direct(options))
+    return stage->array ? stage->array : options->array;
+  if (extinction && emission)
+    return strcmp(extinction, emission) == 0 ? extinction : NULL;
+  return extinction ? extinction : emission;
+}
+
 /* The dataset and its field or coefficients; `step` NULL: the one that the options name. */
 static int read_field(Stage *stage, const RenderOptions *options, const int64_t *step) {
   const double start = cli_seconds();
@@ -57,7 +67,7 @@ static int read_field(Stage *stage, const RenderOptions *options, const int64_t 
   desc.subdivision = (int)options->subdivide;
   desc.cell_to_point = options->cell_to_point;
   desc.no_displacement = options->no_displacement;
-  desc.only = stage->array ? stage->array : options->array; /* that of the step before: none is chosen anew */
+  desc.only = only_array(stage, options);
   if (step) {
     desc.step = *step;
     desc.time = NAN;

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Runs the command over changed files, for as long as it is told: command COMMAND FOLDER SECONDS SEED FILE…
+/* Runs the command over changed files, for as long as it is told: fuzz_command COMMAND FOLDER SECONDS SEED FILE…
  *
- * Each of the files is valid; one is taken, changed at random, written to FOLDER and read by `COMMAND info` or `COMMAND render`. The command
- * has to end by itself, after no more than ten seconds of a processor and a minute in all, with status 0, or with 1 and one line that begins "tetcast: error:"; what ends as an error may
- * take no more memory than four times the file and 256 MB. What breaks this is kept in FOLDER, as found-0, found-1 …, and told of. */
+ * Each FILE is valid. One after the other is chosen at random, changed at random, written to FOLDER and read by
+ * `COMMAND info` or, more seldom, drawn by `COMMAND render`. That has to end by itself, after at most ten seconds of a
+ * processor (and a minute in all, as others may use the machine), with status 0, or with status 1 and one line that
+ * begins with "tetcast: error:". What ends as an error may take four times the file's memory and 256 MB. A file that
+ * breaks this is kept in FOLDER, as found-0, found-1 …, and told of. */
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -18,6 +20,15 @@
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
+
+/* Whether the command has AddressSanitizer, as this has, which takes memory for itself. */
+#ifdef __SANITIZE_ADDRESS__
+#define SANITIZED 1
+#elif defined(__has_feature)
+#define SANITIZED __has_feature(address_sanitizer)
+#else
+#define SANITIZED 0
+#endif
 
 enum { PROCESSOR_SECONDS = 10, PATIENCE = 60 };
 
@@ -36,10 +47,12 @@ typedef struct Bytes {
 } Bytes;
 
 static void reserve(Bytes *bytes, size_t room) {
-  if (room <= bytes->room) return;
+  if (room <= bytes->room)
+    return;
   bytes->room = 2 * room;
   bytes->at = realloc(bytes->at, bytes->room);
-  if (!bytes->at) abort();
+  if (!bytes->at)
+    abort();
 }
 
 static Bytes read_file(const char *path) {
@@ -67,15 +80,56 @@ static void write_file(const char *path, const Bytes *bytes) {
 
 /* ── changes ── */
 
-static const char *const words[] = {"-1", "0", "1", "2147483647", "2147483648", "-2147483648", "4294967295", "4294967296", "9223372036854775807",
-                                    "18446744073709551615", "1e308", "1e999", "-1e308", "nan", "inf", "String", "Int8", "UInt8", "Float32", "Float64",
-                                    "Bit", "IdType", "binary", "ascii", "appended", "vtkLZ4DataCompressor", "vtkLZMADataCompressor", "vtkZLibDataCompressor",
-                                    "BigEndian", "UInt64", "connectivity", "offsets", "types", "faces", "faceoffsets", "vtkGhostType", "TimeStep=\"0\"",
-                                    "NumberOfComponents=\"1000000\"", "NumberOfTuples=\"1000000\"", "<FieldData>", "</DataArray>", "<Piece>", "\"", ">", "<"};
+static const char *const words[] = {"-1",
+                                    "0",
+                                    "1",
+                                    "2147483647",
+                                    "2147483648",
+                                    "-2147483648",
+                                    "4294967295",
+                                    "4294967296",
+                                    "9223372036854775807",
+                                    "18446744073709551615",
+                                    "1e308",
+                                    "1e999",
+                                    "-1e308",
+                                    "nan",
+                                    "inf",
+                                    "String",
+                                    "Int8",
+                                    "UInt8",
+                                    "Float32",
+                                    "Float64",
+                                    "Bit",
+                                    "IdType",
+                                    "binary",
+                                    "ascii",
+                                    "appended",
+                                    "vtkLZ4DataCompressor",
+                                    "vtkLZMADataCompressor",
+                                    "vtkZLibDataCompressor",
+                                    "BigEndian",
+                                    "UInt64",
+                                    "connectivity",
+                                    "offsets",
+                                    "types",
+                                    "faces",
+                                    "faceoffsets",
+                                    "vtkGhostType",
+                                    "TimeStep=\"0\"",
+                                    "NumberOfComponents=\"1000000\"",
+                                    "NumberOfTuples=\"1000000\"",
+                                    "<FieldData>",
+                                    "</DataArray>",
+                                    "<Piece>",
+                                    "\"",
+                                    ">",
+                                    "<"};
 
 /* Cuts `cut` bytes out at a place and puts others there. */
 static void replace(Bytes *bytes, size_t at, size_t cut, const char *text, size_t size) {
-  if (cut > bytes->size - at) cut = bytes->size - at;
+  if (cut > bytes->size - at)
+    cut = bytes->size - at;
   reserve(bytes, bytes->size + size);
   memmove(bytes->at + at + size, bytes->at + at + cut, bytes->size - at - cut);
   memcpy(bytes->at + at, text, size);
@@ -86,12 +140,14 @@ static void replace(Bytes *bytes, size_t at, size_t cut, const char *text, size_
 static size_t place(const Bytes *bytes, const char *letters) {
   const size_t limit = random_below(3) && bytes->size > 4096 ? 4096 : bytes->size;
   size_t at = random_below((uint32_t)limit);
-  for (int tries = 0; letters && tries < 2000 && !strchr(letters, bytes->at[at] ? bytes->at[at] : '~'); ++tries) at = random_below((uint32_t)limit);
+  for (int tries = 0; letters && tries < 2000 && !strchr(letters, bytes->at[at] ? bytes->at[at] : '~'); ++tries)
+    at = random_below((uint32_t)limit);
   return at;
 }
 
 static void change(Bytes *bytes) {
-  if (bytes->size == 0) return;
+  if (bytes->size == 0)
+    return;
   const char *word = words[random_below(sizeof words / sizeof *words)];
   size_t at;
   switch (random_below(9)) {
@@ -104,14 +160,16 @@ static void change(Bytes *bytes) {
     break;
   case 2: /* a whole number */
     at = place(bytes, "0123456789");
-    while (at > 0 && strchr("0123456789", bytes->at[at - 1]) && bytes->at[at - 1]) --at;
+    while (at > 0 && strchr("0123456789", bytes->at[at - 1]) && bytes->at[at - 1])
+      --at;
     replace(bytes, at, strspn(bytes->at + at, "0123456789"), word, strlen(word));
     break;
   case 3: /* the value of an attribute */
     at = place(bytes, "\"") + 1;
     if (at < bytes->size) {
       const char *end = memchr(bytes->at + at, '"', bytes->size - at);
-      replace(bytes, at, end && end - bytes->at - (ptrdiff_t)at < 64 ? (size_t)(end - bytes->at) - at : 0, word, strlen(word));
+      replace(bytes, at, end && end - bytes->at - (ptrdiff_t)at < 64 ? (size_t)(end - bytes->at) - at : 0, word,
+              strlen(word));
     }
     break;
   case 4: /* a word anywhere */
@@ -121,9 +179,11 @@ static void change(Bytes *bytes) {
     bytes->size = random_below((uint32_t)bytes->size);
     break;
   case 6: { /* a part twice, or somewhere else */
-    const size_t from = place(bytes, "<"), size = 1 + random_below(400), part = size < bytes->size - from ? size : bytes->size - from;
+    const size_t from = place(bytes, "<"), size = 1 + random_below(400),
+                 part = size < bytes->size - from ? size : bytes->size - from;
     char *copy = malloc(part);
-    if (!copy) abort();
+    if (!copy)
+      abort();
     memcpy(copy, bytes->at + from, part);
     replace(bytes, place(bytes, "<"), random_below(2) ? 0 : random_below(200), copy, part);
     free(copy);
@@ -133,14 +193,15 @@ static void change(Bytes *bytes) {
     replace(bytes, place(bytes, "< \""), random_below(200), "", 0);
     break;
   default: /* bytes that may be any */
-    for (uint32_t i = 0, n = 1 + random_below(16); i < n; ++i) bytes->at[place(bytes, NULL)] = (char)random_below(256);
+    for (uint32_t i = 0, n = 1 + random_below(16); i < n; ++i)
+      bytes->at[place(bytes, NULL)] = (char)random_below(256);
   }
 }
 
 /* ── the command ── */
 
 typedef struct Outcome {
-  int status;  /* as of waitpid() */
+  int status; /* as of waitpid() */
   bool late;
   long kilobytes;
   double seconds;
@@ -160,16 +221,16 @@ static void become(const char *command, const char *folder, const char *file, bo
   const int nothing = open("/dev/null", O_WRONLY), errors = open(error_path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
   dup2(nothing, 1);
   dup2(errors, 2);
-  const struct rlimit space = {(rlim_t)16 << 30, (rlim_t)16 << 30}, cores = {0, 0}, time = {PROCESSOR_SECONDS, PROCESSOR_SECONDS + 1};
+  const struct rlimit space = {(rlim_t)16 << 30, (rlim_t)16 << 30}, cores = {0, 0},
+                      time = {PROCESSOR_SECONDS, PROCESSOR_SECONDS + 1};
   setrlimit(RLIMIT_CPU, &time);
-#ifndef __SANITIZE_ADDRESS__
-  setrlimit(RLIMIT_AS, &space);
-#else
-  (void)space;
-#endif
+  if (!SANITIZED)
+    setrlimit(RLIMIT_AS, &space);
   setrlimit(RLIMIT_CORE, &cores);
-  if (render) execl(command, command, "render", file, "-o", picture, "--size", "16x12", "--threads", "1", (char *)NULL);
-  else execl(command, command, "info", file, (char *)NULL);
+  if (render)
+    execl(command, command, "render", file, "-o", picture, "--size", "16x12", "--threads", "1", (char *)NULL);
+  else
+    execl(command, command, "info", file, (char *)NULL);
   _exit(127);
 }
 
@@ -183,7 +244,8 @@ static Outcome run(const char *command, const char *folder, const char *file, bo
     perror("fork");
     exit(2);
   }
-  if (child == 0) become(command, folder, file, render, error_path);
+  if (child == 0)
+    become(command, folder, file, render, error_path);
   struct rusage usage;
   pid_t ended = 0;
   while ((ended = wait4(child, &outcome.status, WNOHANG, &usage)) == 0) {
@@ -199,7 +261,8 @@ static Outcome run(const char *command, const char *folder, const char *file, bo
   outcome.seconds = now() - start;
   outcome.kilobytes = usage.ru_maxrss;
   const Bytes errors = read_file(error_path);
-  snprintf(outcome.error, sizeof outcome.error, "%.*s", (int)(errors.size < 500 ? errors.size : 500), errors.size ? errors.at : "");
+  snprintf(outcome.error, sizeof outcome.error, "%.*s", (int)(errors.size < 500 ? errors.size : 500),
+           errors.size ? errors.at : "");
   for (const char *line = outcome.error; line; line = strchr(line, '\n')) {
     line += line != outcome.error;
     outcome.errors += strncmp(line, "tetcast: error: ", 16) == 0;
@@ -210,19 +273,25 @@ static Outcome run(const char *command, const char *folder, const char *file, bo
 
 /* What is wrong with how it ended; NULL: nothing. */
 static const char *fault_of(const Outcome *outcome, size_t size) {
-  if (outcome->late || (WIFSIGNALED(outcome->status) && (WTERMSIG(outcome->status) == SIGXCPU))) return "does not end";
-  if (WIFSIGNALED(outcome->status)) return "crashes";
+  if (outcome->late || (WIFSIGNALED(outcome->status) && (WTERMSIG(outcome->status) == SIGXCPU)))
+    return "does not end";
+  if (WIFSIGNALED(outcome->status))
+    return "crashes";
   const int code = WEXITSTATUS(outcome->status);
-  if (code == 0) return outcome->errors ? "an error, and status 0" : NULL;
-  if (code != 1) return "has another status than 0 and 1";
-  if (outcome->errors != 1) return "has not one line of error";
-  if (outcome->kilobytes > (long)(4 * size / 1024 + 256 * 1024)) return "takes too much memory for an error";
+  if (code == 0)
+    return outcome->errors ? "an error, and status 0" : NULL;
+  if (code != 1)
+    return "has another status than 0 and 1";
+  if (outcome->errors != 1)
+    return "has not one line of error";
+  if (!SANITIZED && outcome->kilobytes > (long)(4 * size / 1024 + 256 * 1024))
+    return "takes too much memory for an error";
   return NULL;
 }
 
 int main(int argc, char **argv) {
   if (argc < 6) {
-    fputs("usage: command COMMAND FOLDER SECONDS SEED FILE...\n", stderr);
+    fputs("usage: fuzz_command COMMAND FOLDER SECONDS SEED FILE...\n", stderr);
     return 2;
   }
   const char *command = argv[1], *folder = argv[2];
@@ -240,7 +309,8 @@ int main(int argc, char **argv) {
     bytes.size = 0;
     replace(&bytes, 0, 0, whole.at, whole.size);
     free(whole.at);
-    for (uint32_t i = 0, n = 1 + random_below(4); i < n; ++i) change(&bytes);
+    for (uint32_t i = 0, n = 1 + random_below(4); i < n; ++i)
+      change(&bytes);
     char path[1024], kept[1024];
     snprintf(path, sizeof path, "%s/changed%s", folder, dot ? dot : "");
     write_file(path, &bytes);
@@ -251,11 +321,12 @@ int main(int argc, char **argv) {
     refused += WIFEXITED(outcome.status) && WEXITSTATUS(outcome.status) == 1;
     longest = outcome.seconds > longest ? outcome.seconds : longest;
     most = outcome.kilobytes > most ? outcome.kilobytes : most;
-    if (!fault) continue;
+    if (!fault)
+      continue;
     snprintf(kept, sizeof kept, "%s/found-%d%s", folder, found++, dot ? dot : "");
     write_file(kept, &bytes);
-    printf("%s: %s of it %s (status %#x, %.1f s, %ld MB; from %s): %s\n", kept, render ? "render" : "info", fault, (unsigned)outcome.status, outcome.seconds,
-           outcome.kilobytes / 1024, source, outcome.error);
+    printf("%s: %s of it %s (status %#x, %.1f s, %ld MB; from %s): %s\n", kept, render ? "render" : "info", fault,
+           (unsigned)outcome.status, outcome.seconds, outcome.kilobytes / 1024, source, outcome.error);
     fflush(stdout);
   }
   printf("%ld runs, %ld refused, %d found; longest %.1f s, most %ld MB\n", runs, refused, found, longest, most / 1024);

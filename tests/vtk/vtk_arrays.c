@@ -326,9 +326,10 @@ static void test_default(void **state) {
     const char *attributes, *name;
   } others[] = {{"<PointData>" ARRAY("Float32", "a", "", "1 1 1 1 1") "</PointData><CellData>" ARRAY("Float32", "b", "", "1 2 2") "</CellData>", "b"},
                 {"<PointData>" ARRAY("Float32", "a", "", "1 1 1 1 1") "</PointData><CellData>" ARRAY("Float32", "b", "", "1 1 2") "</CellData>", "a"},
-                {"<PointData>" VECTOR("a", "1 2 3 1 2 3 1 2 3 1 2 3 2 1 3") "</PointData><CellData>" ARRAY("Float32", "b", "", "1 1 2") "</CellData>", "b"},
+                {"<PointData>" VECTOR("a", "1 2 3 1 2 3 1 2 3 1 2 3 2 1 3") "</PointData><CellData>" ARRAY("Float32", "b", "", "1 2 2") "</CellData>", "b"},
                 {"<PointData>" VECTOR("a", "1 2 3 1 2 3 1 2 3 1 2 3 9 9 9") "</PointData><CellData>" ARRAY("Float32", "b", "", "1 1 2") "</CellData>", "a"},
-                {"<PointData>" VECTOR("a", "1 2 3 1 2 3 1 2 3 1 2 3 9 9 9") "</PointData><CellData>" ARRAY("Float32", "b", "", "1 2 2") "</CellData>", "b"},
+                {"<PointData>" VECTOR("a", "1 2 3 1 2 3 1 2 3 1 2 3 9 9 9") "</PointData><CellData>" ARRAY("Float32", "b", "", "1 2 2") "</CellData>", "a"},
+                {"<PointData>" VECTOR("a", "1 2 3 1 2 3 1 2 3 1 2 3 9 9 9") ARRAY("Float32", "s", "", "1 1 1 1 2") "</PointData><CellData>" ARRAY("Float32", "b", "", "1 2 2") "</CellData>", "s"},
                 {"<PointData Scalars='a'>" ARRAY("Float32", "a", "", "1 1 1 1 1") ARRAY("Float32", "c", "", "1 2 3 4 5") "</PointData>", "a"},
                 {"<PointData GlobalIds='a'>" ARRAY("Int64", "a", "", "1 2 3 4 5") ARRAY("Float32", "c", "", "1 1 1 1 1") "</PointData>", "c"}};
   for (size_t i = 0; i < sizeof others / sizeof *others; ++i) {

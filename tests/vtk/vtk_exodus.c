@@ -260,8 +260,29 @@ static void test_displacement(void **state) {
   }
 }
 
+/* Whether what the command says of a file, as JSON, has this text in it, apart from white space. */
+static bool said(const char *options, const char *path, const char *text) {
+  char command[4096], found[65536] = "";
+  snprintf(command, sizeof command, "\"$TETCAST_COMMAND\" info --json %s '%s' | tr -d ' \\n'", options, path);
+  FILE *output = popen(command, "r");
+  assert_non_null(output);
+  found[fread(found, 1, sizeof found - 1, output)] = '\0';
+  assert_int_equal(pclose(output), 0);
+  return strstr(found, text) != NULL;
+}
+
+/* The same of the command; $TETCAST_COMMAND is where it is. */
+static void test_command(void **state) {
+  static const Element element = {"TETRA", 4, 1.0 / 6, NULL};
+  if (!getenv("TETCAST_COMMAND")) skip();
+  const char *path = write_elements(*state, &element, "disp");
+  assert_true(said("--time 0", path, "\"bounds\":[0.0,4.0,0.0,1.0,0.0,1.0]"));
+  assert_true(said("--time 1", path, "\"bounds\":[0.0,4.0,0.0,1.0,1.0,2.0]"));
+  assert_true(said("--time 1 --no-displacement", path, "\"bounds\":[0.0,4.0,0.0,1.0,0.0,1.0]"));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {TEST(test_same_as_vtu), TEST(test_blocks), TEST(test_truncation), TEST(test_flipped_bits), TEST(test_nodes),
-                                     TEST(test_displacement)};
+                                     TEST(test_displacement), TEST(test_command)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

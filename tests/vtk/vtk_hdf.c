@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "box.h"
+#include "claims.h"
 #include "hdf_samples.h"
 
 /* Whether a step is what hdf_sample_cubes() says, or of a file without steps, 0. */
@@ -144,7 +145,20 @@ static void test_refused(void **state) {
   }
 }
 
+/* Numbers and places that no file could have. */
+static void test_claims(void **state) {
+  static const char *const lists[] = {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds", "Offsets", "Connectivity"};
+  Fixture *fixture = *state;
+  const char *path = in_folder(fixture, "c.vtkhdf");
+  for (size_t i = 0; i < sizeof lists / sizeof *lists; ++i) {
+    for (int shift = 30; shift < 63; shift += 8) {
+      hdf_sample_damaged(path, lists[i], 1LL << shift);
+      assert_cheap(fixture, path, lists[i][0] == 'N', "truncated or damaged"); /* of step 0 or 1 */
+    }
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {TEST(test_steps), TEST(test_image), TEST(test_types), TEST(test_refused)};
+  const struct CMUnitTest tests[] = {TEST(test_claims), TEST(test_steps), TEST(test_image), TEST(test_types), TEST(test_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

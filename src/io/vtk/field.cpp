@@ -36,15 +36,15 @@ static bool varies(const TetcastDataset *dataset, const Array &array) {
   return false;
 }
 
-// The active scalars; else of those that vary, or of all if none does, scalars before vectors and of each points before cells; what numbers
-// points or cells comes last.
+// The active scalars; else of those that vary, or of all if none does, those of points before those of cells, and of each scalars before
+// vectors; what numbers points or cells comes last.
 static const Array *default_array(const TetcastDataset *dataset) {
   const Array *best = nullptr;
   int best_rank = 0;
   for (const Array &array : dataset->arrays) {
     if (array.active && array.data->GetNumberOfComponents() == 1) return &array;
     const bool shows = !array.number && varies(dataset, array);
-    const int rank = 1 + 8 * !array.number + 4 * shows + 2 * (array.data->GetNumberOfComponents() == 1) + (array.association == TETCAST_POINT);
+    const int rank = 1 + 8 * !array.number + 4 * shows + 2 * (array.association == TETCAST_POINT) + (array.data->GetNumberOfComponents() == 1);
     if (rank > best_rank) best = &array;
     best_rank = std::max(rank, best_rank);
   }
