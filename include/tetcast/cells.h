@@ -33,7 +33,8 @@ typedef enum TetcastCellType {
   TETCAST_CELL_BIQUADRATIC_QUADRATIC_WEDGE = 32,
   TETCAST_CELL_BIQUADRATIC_QUADRATIC_HEXAHEDRON = 33,
   TETCAST_CELL_TRIQUADRATIC_PYRAMID = 37, /* its nodes within triangles and within the cell are not used */
-  TETCAST_CELL_LAGRANGE_TETRAHEDRON = 71, /* with 15 nodes of second order, with nodes in the middles of faces and of the cell */
+  TETCAST_CELL_LAGRANGE_TETRAHEDRON =
+      71, /* with 15 nodes of second order, with nodes in the middles of faces and of the cell */
   TETCAST_CELL_LAGRANGE_HEXAHEDRON = 72,
   TETCAST_CELL_LAGRANGE_WEDGE = 73, /* with 21 nodes the same */
   TETCAST_CELL_BEZIER_TETRAHEDRON = 78,

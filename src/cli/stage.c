@@ -41,7 +41,8 @@ static void tell_choice(const Stage *stage) {
     others = longer;
   }
   if (others)
-    cli_note("draws %s array %s; --array chooses another: %s", chosen.association == TETCAST_CELL ? "cell" : "point", stage->array, others);
+    cli_note("draws %s array %s; --array chooses another: %s", chosen.association == TETCAST_CELL ? "cell" : "point",
+             stage->array, others);
   else
     cli_note("draws %s array %s, the only one", chosen.association == TETCAST_CELL ? "cell" : "point", stage->array);
   free(others);

@@ -341,7 +341,8 @@ static TetcastStatus add_lattices(Cutter *cutter) {
     if (fault) return report(cutter, i);
     int at[3] = {-1, 0, 0};
     while (tc_lattice_next(&cell.lattice, at)) {
-      if (node_at(&cell, at, scratch->node) >= 0) continue;
+      if (node_at(&cell, at, scratch->node) >= 0)
+        continue;
       const TcPointKey key = tc_lattice_key(&cell.lattice, at, scratch->node, i);
       if (tc_points_find(points, &key) >= 0) continue;
       if (cutter->vertex_count + points->count >= TC_MAX_COUNT) {

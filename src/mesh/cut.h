@@ -143,7 +143,8 @@ bool tc_lattice_next(const TcLattice *lattice, int at[3]);
 int64_t tc_lattice_index(const TcLattice *lattice, const int at[3]);
 /* The node at a point; −1 if there is none. */
 int tc_lattice_node(const TcLattice *lattice, const int at[3]);
-/* The same of a cell with a corner twice, some points of which are one: the first node of those that are one with this. */
+/* The same of a cell with a corner twice, some points of which are one: the first node of those that are one with this.
+ */
 int tc_lattice_shared_node(const TcLattice *lattice, const int at[3], const uint32_t *ids, int64_t cell);
 /* The shape functions of all nodes at a point. */
 void tc_lattice_weights(const TcLattice *lattice, const int at[3], double *weight);

@@ -75,8 +75,10 @@ static const double largest_coordinate = 1e300;
 static TetcastStatus check_bounds(const TetcastMesh *mesh) {
   for (int k = 0; k < 3; ++k) {
     const double low = mesh->bounds[2 * k], high = mesh->bounds[2 * k + 1];
-    if (fmax(fabs(low), fabs(high)) <= largest_coordinate) continue;
-    return tc_error(mesh->context, TETCAST_ERROR_DATA, "the mesh reaches from %g to %g in %c: coordinates may be %g at most", low, high, "xyz"[k],
+    if (fmax(fabs(low), fabs(high)) <= largest_coordinate)
+      continue;
+    return tc_error(mesh->context, TETCAST_ERROR_DATA,
+                    "the mesh reaches from %g to %g in %c: coordinates may be %g at most", low, high, "xyz"[k],
                     largest_coordinate);
   }
   return TETCAST_OK;

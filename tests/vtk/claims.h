@@ -16,7 +16,8 @@ typedef struct Outcome {
   long kilobytes; /* the most that this process, or one that it started, had at a time */
 } Outcome;
 
-/* Reads step `step` of a volume mesh, or, if that is negative, a surface, in a process of its own, which may take ten seconds of a processor. */
+/* Reads step `step` of a volume mesh, or, if that is negative, a surface, in a process of its own, which may take ten
+ * seconds of a processor. */
 static inline Outcome read_limited(Fixture *fixture, const char *path, int step) {
   int ends[2];
   Outcome outcome = {0};
@@ -30,7 +31,8 @@ static inline Outcome read_limited(Fixture *fixture, const char *path, int step)
     TetcastSurface surface = {0};
     TetcastDatasetDesc desc = tetcast_dataset_desc_default();
     desc.step = step;
-    outcome.status = step < 0 ? tetcast_surface_read(fixture->context, path, &surface) : tetcast_dataset_read(fixture->context, path, &desc, &dataset);
+    outcome.status = step < 0 ? tetcast_surface_read(fixture->context, path, &surface)
+                              : tetcast_dataset_read(fixture->context, path, &desc, &dataset);
     snprintf(outcome.message, sizeof outcome.message, "%.1023s", fixture->message);
     struct rusage own, started;
     getrusage(RUSAGE_SELF, &own);
@@ -43,7 +45,8 @@ static inline Outcome read_limited(Fixture *fixture, const char *path, int step)
   close(ends[0]);
   int how;
   assert_int_equal(waitpid(child, &how, 0), child);
-  if (how != 0 || got != (ssize_t)sizeof outcome) fail_msg("%s ends the process, with %#x", path, (unsigned)how);
+  if (how != 0 || got != (ssize_t)sizeof outcome)
+    fail_msg("%s ends the process, with %#x", path, (unsigned)how);
   return outcome;
 }
 
@@ -53,11 +56,13 @@ static inline void assert_cheap(Fixture *fixture, const char *path, int step, co
   assert_int_equal(stat(path, &about), 0);
   const Outcome outcome = read_limited(fixture, path, step);
   if ((outcome.status != TETCAST_OK) != (words != NULL) || (words && !strstr(outcome.message, words))) {
-    fail_msg("%s: status %d, '%s' instead of '%s'", path, (int)outcome.status, outcome.message, words ? words : "success");
+    fail_msg("%s: status %d, '%s' instead of '%s'", path, (int)outcome.status, outcome.message,
+             words ? words : "success");
   }
 #if !defined(__SANITIZE_ADDRESS__) /* which takes memory for itself */
   const long most = (long)(4 * about.st_size / 1024) + 256 * 1024;
-  if (outcome.kilobytes > most) fail_msg("%s: takes %ld MB, '%s'", path, outcome.kilobytes / 1024, outcome.message);
+  if (outcome.kilobytes > most)
+    fail_msg("%s: takes %ld MB, '%s'", path, outcome.kilobytes / 1024, outcome.message);
 #endif
 }
 

@@ -32,7 +32,8 @@ static void remember(void *user, TetcastSeverity severity, const char *text) {
   Fixture *fixture = user;
   assert_null(strchr(text, '\n'));
   fixture->warnings += severity == TETCAST_SEVERITY_WARNING;
-  if (severity == TETCAST_SEVERITY_WARNING) snprintf(fixture->warning, sizeof fixture->warning, "%s", text);
+  if (severity == TETCAST_SEVERITY_WARNING)
+    snprintf(fixture->warning, sizeof fixture->warning, "%s", text);
   if (severity != TETCAST_SEVERITY_ERROR) return;
   ++fixture->errors;
   snprintf(fixture->message, sizeof fixture->message, "%s", text);

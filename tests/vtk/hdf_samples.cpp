@@ -30,19 +30,23 @@ public:
     H5Fclose(file_);
   }
   template <typename T> void attribute(const char *name, hid_t type, const T *values, hsize_t count) {
-    const hid_t space = H5Screate_simple(1, &count, nullptr), attribute = H5Acreate2(root_, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+    const hid_t space = H5Screate_simple(1, &count, nullptr),
+                attribute = H5Acreate2(root_, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
     H5Awrite(attribute, type, values);
     H5Aclose(attribute);
     H5Sclose(space);
   }
   // A dataset at a path; groups on the way are made.
-  void write(const std::string &name, hid_t file_type, hid_t memory_type, const void *values, const std::vector<hsize_t> &size, bool chunked = false) {
+  void write(const std::string &name, hid_t file_type, hid_t memory_type, const void *values,
+             const std::vector<hsize_t> &size, bool chunked = false) {
     const hid_t links = H5Pcreate(H5P_LINK_CREATE), layout = H5Pcreate(H5P_DATASET_CREATE);
     H5Pset_create_intermediate_group(links, 1);
     const hid_t space = H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr);
-    if (chunked) H5Pset_chunk(layout, static_cast<int>(size.size()), std::vector<hsize_t>(size.size(), 1).data());
+    if (chunked)
+      H5Pset_chunk(layout, static_cast<int>(size.size()), std::vector<hsize_t>(size.size(), 1).data());
     const hid_t set = H5Dcreate2(root_, name.c_str(), file_type, space, links, layout, H5P_DEFAULT);
-    if (values) H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
+    if (values)
+      H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
     H5Dclose(set);
     H5Sclose(space);
     H5Pclose(links);
@@ -50,11 +54,13 @@ public:
   }
   void integers(const std::string &name, const std::vector<int64_t> &values, bool column = false) {
     std::vector<hsize_t> size = {values.size()};
-    if (column) size.push_back(1);
+    if (column)
+      size.push_back(1);
     write(name, H5T_STD_I64LE, H5T_NATIVE_INT64, values.data(), size);
   }
   void doubles(const std::string &name, const std::vector<double> &values, std::vector<hsize_t> size = {}) {
-    if (size.empty()) size = {values.size()};
+    if (size.empty())
+      size = {values.size()};
     write(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.data(), size);
   }
 
@@ -103,10 +109,12 @@ struct Lists {
   }
 };
 
-void write_steps(File *file, const std::vector<int64_t> &parts, const std::vector<int64_t> &part, const std::vector<int64_t> &point,
-                 const std::vector<int64_t> &cell, const std::vector<int64_t> &id, const std::vector<int64_t> &h, const std::vector<int64_t> &c) {
+void write_steps(File *file, const std::vector<int64_t> &parts, const std::vector<int64_t> &part,
+                 const std::vector<int64_t> &point, const std::vector<int64_t> &cell, const std::vector<int64_t> &id,
+                 const std::vector<int64_t> &h, const std::vector<int64_t> &c) {
   file->doubles("Steps/Values", {0, 0.5, 1});
-  if (!parts.empty()) file->integers("Steps/NumberOfParts", parts);
+  if (!parts.empty())
+    file->integers("Steps/NumberOfParts", parts);
   file->integers("Steps/PartOffsets", part);
   file->integers("Steps/PointOffsets", point);
   file->integers("Steps/CellOffsets", cell, true);
@@ -139,18 +147,22 @@ void hdf_sample_cubes(const char *path, HdfSteps steps) {
   for (int step = 1; step < 3; ++step) { // the values alone
     Lists more;
     more.add_part(0, 2, step);
-    for (double &h : more.h) h = 0;
-    for (size_t i = 0; i < more.h.size(); ++i) more.h[i] = (1 + step) * lists.h[i];
+    for (double &h : more.h)
+      h = 0;
+    for (size_t i = 0; i < more.h.size(); ++i)
+      more.h[i] = (1 + step) * lists.h[i];
     lists.h.insert(lists.h.end(), more.h.begin(), more.h.end());
     lists.c.insert(lists.c.end(), more.c.begin(), more.c.end());
-    if (!listed) continue;
+    if (!listed)
+      continue;
     lists.points.push_back(12);
     lists.cells.push_back(2);
     lists.ids.push_back(16);
   }
   lists.write(&file);
-  write_steps(&file, listed ? std::vector<int64_t>{1, 1, 1} : std::vector<int64_t>(), listed ? std::vector<int64_t>{0, 1, 2} : std::vector<int64_t>{0, 0, 0},
-              {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 12, 24}, {0, 2, 4});
+  write_steps(&file, listed ? std::vector<int64_t>{1, 1, 1} : std::vector<int64_t>(),
+              listed ? std::vector<int64_t>{0, 1, 2} : std::vector<int64_t>{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0},
+              {0, 12, 24}, {0, 2, 4});
 }
 
 void hdf_sample_image(const char *path, bool steps) {
@@ -162,10 +174,13 @@ void hdf_sample_image(const char *path, bool steps) {
   file.attribute("Spacing", H5T_NATIVE_DOUBLE, spacing, 3);
   std::vector<double> h, c, still;
   for (int step = 0; step < (steps ? 2 : 1); ++step) {
-    for (int i = 0; i < 12; ++i) h.push_back((1 + step) * (i % 3 + 2 * (i / 3 % 2) + 4 * (i / 6)));
-    for (int i = 0; i < 2; ++i) c.push_back(10 * step + i);
+    for (int i = 0; i < 12; ++i)
+      h.push_back((1 + step) * (i % 3 + 2 * (i / 3 % 2) + 4 * (i / 6)));
+    for (int i = 0; i < 2; ++i)
+      c.push_back(10 * step + i);
   }
-  for (int i = 0; i < 12; ++i) still.push_back(7);
+  for (int i = 0; i < 12; ++i)
+    still.push_back(7);
   if (steps) {
     file.doubles("PointData/h", h, {2, 2, 2, 3});
     file.doubles("CellData/c", c, {2, 1, 1, 2});
@@ -195,7 +210,8 @@ void hdf_sample_types(const char *path) {
     pair.insert(pair.end(), {i, i});
   }
   file.doubles("PointData/good", good);
-  const hid_t truths = H5Tenum_create(H5T_STD_I8LE), halves = H5Tcopy(H5T_IEEE_F32LE), text = H5Tcopy(H5T_C_S1), both = H5Tcreate(H5T_COMPOUND, 16);
+  const hid_t truths = H5Tenum_create(H5T_STD_I8LE), halves = H5Tcopy(H5T_IEEE_F32LE), text = H5Tcopy(H5T_C_S1),
+              both = H5Tcreate(H5T_COMPOUND, 16);
   int8_t value = 0;
   H5Tenum_insert(truths, "FALSE", &value);
   value = 1;
@@ -219,11 +235,14 @@ void hdf_sample_types(const char *path) {
   H5Tclose(both);
 }
 
-void hdf_sample_type(const char *path, const char *type) { File file(path, type); }
+void hdf_sample_type(const char *path, const char *type) {
+  File file(path, type);
+}
 
 void hdf_sample_damaged(const char *path, const char *name, long long value) {
   hdf_sample_cubes(path, HDF_MOVING);
-  const hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT), set = H5Dopen2(file, (std::string("VTKHDF/") + name).c_str(), H5P_DEFAULT);
+  const hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT),
+              set = H5Dopen2(file, (std::string("VTKHDF/") + name).c_str(), H5P_DEFAULT);
   const hid_t all = H5Dget_space(set);
   std::vector<long long> values(static_cast<size_t>(H5Sget_simple_extent_npoints(all)));
   H5Dread(set, H5T_NATIVE_LLONG, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());

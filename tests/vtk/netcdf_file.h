@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Writes files in NetCDF's classic format: dimensions, attributes of text, variables of letters, integers and doubles. */
+/* Writes files in NetCDF's classic format: dimensions, attributes of text, variables of letters, integers and doubles.
+ */
 #ifndef TEST_VTK_NETCDF_FILE_H
 #define TEST_VTK_NETCDF_FILE_H
 
@@ -15,9 +16,9 @@ typedef struct NetcdfDimension {
 
 typedef struct NetcdfVariable {
   const char *name;
-  int dimensions[3]; /* numbers, −1 behind the last; that of records comes first */
-  char type;         /* 'c', 'i', 'd' */
-  const void *data;  /* record after record */
+  int dimensions[3];             /* numbers, −1 behind the last; that of records comes first */
+  char type;                     /* 'c', 'i', 'd' */
+  const void *data;              /* record after record */
   const char *attribute, *value; /* NULL: none */
 } NetcdfVariable;
 
@@ -34,7 +35,8 @@ typedef struct NetcdfFile {
 } NetcdfFile;
 
 static inline void netcdf_integer(FILE *file, uint32_t value) {
-  for (int k = 3; k >= 0; --k) fputc((int)(value >> 8 * k & 255), file);
+  for (int k = 3; k >= 0; --k)
+    fputc((int)(value >> 8 * k & 255), file);
 }
 
 static inline void netcdf_number(FILE *file, char type, const void *data, long i) {
@@ -45,11 +47,13 @@ static inline void netcdf_number(FILE *file, char type, const void *data, long i
   }
   const size_t size = type == 'i' ? 4 : 8;
   memcpy(bytes, (const char *)data + (size_t)i * size, size);
-  for (size_t k = size; k-- > 0;) fputc(bytes[k], file); /* the most significant byte comes first */
+  for (size_t k = size; k-- > 0;)
+    fputc(bytes[k], file); /* the most significant byte comes first */
 }
 
 static inline void netcdf_pad(FILE *file) {
-  while (ftell(file) % 4) fputc(0, file);
+  while (ftell(file) % 4)
+    fputc(0, file);
 }
 
 static inline void netcdf_text(FILE *file, const char *text) {
@@ -77,8 +81,8 @@ static inline long netcdf_bytes(const NetcdfFile *to, const NetcdfVariable *vari
   return (bytes + 3) / 4 * 4;
 }
 
-static inline void netcdf_header(NetcdfFile *to, const NetcdfAttribute *attributes, int attribute_count, const NetcdfVariable *variables, int count,
-                                 const long *begin) {
+static inline void netcdf_header(NetcdfFile *to, const NetcdfAttribute *attributes, int attribute_count,
+                                 const NetcdfVariable *variables, int count, const long *begin) {
   FILE *file = to->file;
   fputs("CDF\x01", file);
   netcdf_integer(file, (uint32_t)to->records);
@@ -93,20 +97,25 @@ static inline void netcdf_header(NetcdfFile *to, const NetcdfAttribute *attribut
   for (int i = 0; i < attribute_count; ++i) {
     const float number = (float)attributes[i].number;
     uint32_t bits = (uint32_t)attributes[i].number;
-    if (attributes[i].type == 5) memcpy(&bits, &number, sizeof bits);
+    if (attributes[i].type == 5)
+      memcpy(&bits, &number, sizeof bits);
     netcdf_text(file, attributes[i].name);
     netcdf_integer(file, attributes[i].text ? 2 : (uint32_t)attributes[i].type);
-    if (attributes[i].text) netcdf_text(file, attributes[i].text);
-    else netcdf_integer(file, 1), netcdf_integer(file, bits);
+    if (attributes[i].text)
+      netcdf_text(file, attributes[i].text);
+    else
+      netcdf_integer(file, 1), netcdf_integer(file, bits);
   }
   netcdf_integer(file, 11);
   netcdf_integer(file, (uint32_t)count);
   for (int i = 0; i < count; ++i) {
     int rank = 0;
-    while (rank < 3 && variables[i].dimensions[rank] >= 0) ++rank;
+    while (rank < 3 && variables[i].dimensions[rank] >= 0)
+      ++rank;
     netcdf_text(file, variables[i].name);
     netcdf_integer(file, (uint32_t)rank);
-    for (int k = 0; k < rank; ++k) netcdf_integer(file, (uint32_t)variables[i].dimensions[k]);
+    for (int k = 0; k < rank; ++k)
+      netcdf_integer(file, (uint32_t)variables[i].dimensions[k]);
     netcdf_integer(file, variables[i].attribute ? 12 : 0);
     netcdf_integer(file, variables[i].attribute ? 1 : 0);
     if (variables[i].attribute) {
@@ -120,15 +129,17 @@ static inline void netcdf_header(NetcdfFile *to, const NetcdfAttribute *attribut
   }
 }
 
-static inline void netcdf_write(const char *path, const NetcdfDimension *dimensions, int dimension_count, int records, const NetcdfAttribute *attributes,
-                                int attribute_count, const NetcdfVariable *variables, int count) {
+static inline void netcdf_write(const char *path, const NetcdfDimension *dimensions, int dimension_count, int records,
+                                const NetcdfAttribute *attributes, int attribute_count, const NetcdfVariable *variables,
+                                int count) {
   NetcdfFile to = {fopen(path, "wb"), dimensions, dimension_count, records};
   long *begin = calloc((size_t)count, sizeof *begin);
   netcdf_header(&to, attributes, attribute_count, variables, count, begin);
   long at = ftell(to.file);
   for (int records_turn = 0; records_turn < 2; ++records_turn) {
     for (int i = 0; i < count; ++i) {
-      if (netcdf_is_record(&to, &variables[i]) != records_turn) continue;
+      if (netcdf_is_record(&to, &variables[i]) != records_turn)
+        continue;
       begin[i] = at;
       at += netcdf_bytes(&to, &variables[i]);
     }
@@ -136,13 +147,15 @@ static inline void netcdf_write(const char *path, const NetcdfDimension *dimensi
   rewind(to.file);
   netcdf_header(&to, attributes, attribute_count, variables, count, begin);
   for (int i = 0; i < count; ++i) {
-    for (long k = 0; !netcdf_is_record(&to, &variables[i]) && k < netcdf_count(&to, &variables[i]); ++k) netcdf_number(to.file, variables[i].type, variables[i].data, k);
+    for (long k = 0; !netcdf_is_record(&to, &variables[i]) && k < netcdf_count(&to, &variables[i]); ++k)
+      netcdf_number(to.file, variables[i].type, variables[i].data, k);
     netcdf_pad(to.file);
   }
   for (int record = 0; record < records; ++record) {
     for (int i = 0; i < count; ++i) {
       const long values = netcdf_count(&to, &variables[i]);
-      for (long k = 0; netcdf_is_record(&to, &variables[i]) && k < values; ++k) netcdf_number(to.file, variables[i].type, variables[i].data, record * values + k);
+      for (long k = 0; netcdf_is_record(&to, &variables[i]) && k < values; ++k)
+        netcdf_number(to.file, variables[i].type, variables[i].data, record * values + k);
       netcdf_pad(to.file);
     }
   }

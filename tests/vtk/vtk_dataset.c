@@ -190,10 +190,12 @@ static void test_default_field(void **state) {
   tetcast_dataset_destroy(&dataset);
 }
 
-/* A wedge of 21 nodes, slightly bent, in each of the orders in which programs list them: VTK's, one with the edges in Exodus's, and Exodus's. */
+/* A wedge of 21 nodes, slightly bent, in each of the orders in which programs list them: VTK's, one with the edges in
+ * Exodus's, and Exodus's. */
 static void test_wedge_orders(void **state) {
   static const int corners[6][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
-  static const char *const places[15] = {"01", "12", "02", "34", "45", "35", "03", "14", "25", "012", "345", "0134", "1245", "0235", "012345"};
+  static const char *const places[15] = {"01", "12",  "02",  "34",   "45",   "35",   "03",    "14",
+                                         "25", "012", "345", "0134", "1245", "0235", "012345"};
   static const int orders[3][15] = {{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14},
                                     {0, 1, 2, 6, 7, 8, 3, 4, 5, 11, 12, 13, 9, 10, 14},
                                     {0, 1, 2, 6, 7, 8, 3, 4, 5, 14, 9, 10, 12, 13, 11}};
@@ -206,19 +208,26 @@ static void test_wedge_orders(void **state) {
         double p[3] = {0};
         const char *place = i < 6 ? (const char[2]){(char)('0' + i), 0} : places[orders[order][i - 6]];
         for (const char *c = place; *c; ++c) {
-          for (int k = 0; k < 3; ++k) p[k] += corners[*c - '0'][k] / (double)strlen(place);
+          for (int k = 0; k < 3; ++k)
+            p[k] += corners[*c - '0'][k] / (double)strlen(place);
         }
-        for (int k = 0; k < 3 && bent; ++k) p[k] += 0.05 * p[(k + 1) % 3] * p[(k + 1) % 3];
+        for (int k = 0; k < 3 && bent; ++k)
+          p[k] += 0.05 * p[(k + 1) % 3] * p[(k + 1) % 3];
         snprintf(points + strlen(points), sizeof points - strlen(points), "%.17g %.17g %.17g ", p[0], p[1], p[2]);
         snprintf(values + strlen(values), sizeof values - strlen(values), "%.17g ", p[0] + 2 * p[1] + 4 * p[2]);
         snprintf(numbers + strlen(numbers), sizeof numbers - strlen(numbers), "%d ", i);
       }
       snprintf(text, sizeof text,
-               "<VTKFile type='UnstructuredGrid' version='2.2' byte_order='LittleEndian'><UnstructuredGrid><Piece NumberOfPoints='21' NumberOfCells='1'>"
-               "<PointData><DataArray type='Float64' Name='s' format='ascii'>%s</DataArray></PointData><Points><DataArray type='Float64'"
-               " NumberOfComponents='3' format='ascii'>%s</DataArray></Points><Cells><DataArray type='Int32' Name='connectivity' format='ascii'>%s</DataArray>"
-               "<DataArray type='Int32' Name='offsets' format='ascii'>21</DataArray><DataArray type='UInt8' Name='types' format='ascii'>73</DataArray></Cells>"
-               "</Piece></UnstructuredGrid></VTKFile>", values, points, numbers);
+               "<VTKFile type='UnstructuredGrid' version='2.2' byte_order='LittleEndian'><UnstructuredGrid><Piece "
+               "NumberOfPoints='21' NumberOfCells='1'>"
+               "<PointData><DataArray type='Float64' Name='s' "
+               "format='ascii'>%s</DataArray></PointData><Points><DataArray type='Float64'"
+               " NumberOfComponents='3' format='ascii'>%s</DataArray></Points><Cells><DataArray type='Int32' "
+               "Name='connectivity' format='ascii'>%s</DataArray>"
+               "<DataArray type='Int32' Name='offsets' format='ascii'>21</DataArray><DataArray type='UInt8' "
+               "Name='types' format='ascii'>73</DataArray></Cells>"
+               "</Piece></UnstructuredGrid></VTKFile>",
+               values, points, numbers);
       fixture->warnings = 0;
       TetcastDataset *dataset = read_good(fixture, text_file(fixture, "w.vtu", text));
       TetcastMesh *mesh;
@@ -546,12 +555,19 @@ static void test_threads(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      TEST(test_mixed_cells),       TEST(test_selectors),
-      TEST(test_default_field),     TEST(test_wedge_orders), TEST(test_magnitude),
-      TEST(test_legacy_attributes), TEST(test_content_beats_extension),
-      TEST(test_encodings),         TEST(test_pieces),
-      TEST(test_others_files),      TEST(test_conforming),
-      TEST(test_added_vertices),    TEST(test_threads),
+      TEST(test_mixed_cells),
+      TEST(test_selectors),
+      TEST(test_default_field),
+      TEST(test_wedge_orders),
+      TEST(test_magnitude),
+      TEST(test_legacy_attributes),
+      TEST(test_content_beats_extension),
+      TEST(test_encodings),
+      TEST(test_pieces),
+      TEST(test_others_files),
+      TEST(test_conforming),
+      TEST(test_added_vertices),
+      TEST(test_threads),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

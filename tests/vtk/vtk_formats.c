@@ -163,12 +163,15 @@ static void test_series(void **state) {
   snprintf(name, sizeof name, "%s/p.vtu", folder);
   sample_layers(name, 0, 4, GHOST_NONE);
   static const char *const lists[][2] = {
-    {"w.pvd", PVD(ENTRY("1", "sub\\p.vtu"))},
-    {"w.vtu.series", "{\"files\": [{\"name\": \"sub\\\\p.vtu\", \"time\": 1}]}"},
-    {"w.pvtu", "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\"><PUnstructuredGrid><Piece Source=\"sub\\p.vtu\"/></PUnstructuredGrid></VTKFile>\n"},
-    {"w.vtm", "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet><DataSet index=\"0\" file=\".\\sub\\p.vtu\"/></vtkMultiBlockDataSet></VTKFile>\n"}};
+      {"w.pvd", PVD(ENTRY("1", "sub\\p.vtu"))},
+      {"w.vtu.series", "{\"files\": [{\"name\": \"sub\\\\p.vtu\", \"time\": 1}]}"},
+      {"w.pvtu", "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\"><PUnstructuredGrid><Piece "
+                 "Source=\"sub\\p.vtu\"/></PUnstructuredGrid></VTKFile>\n"},
+      {"w.vtm", "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet><DataSet index=\"0\" "
+                "file=\".\\sub\\p.vtu\"/></vtkMultiBlockDataSet></VTKFile>\n"}};
   for (int i = 0; i < 4; ++i) {
-    TetcastDataset *dataset = read_with(fixture, text_file(fixture, lists[i][0], lists[i][1]), tetcast_dataset_desc_default());
+    TetcastDataset *dataset =
+        read_with(fixture, text_file(fixture, lists[i][0], lists[i][1]), tetcast_dataset_desc_default());
     assert_layers(fixture, dataset, 0, 4, 1, true);
     tetcast_dataset_destroy(&dataset);
   }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Formats that programs of their own read: in hosts of any state, from several threads at a time, and when a program is missing or dies. */
+/* Formats that programs of their own read: in hosts of any state, from several threads at a time, and when a program is
+ * missing or dies. */
 #include <errno.h>
 #include <pthread.h>
 #include <signal.h>
@@ -14,7 +15,8 @@
 static bool has_format(const char *extensions) {
   const char *here;
   for (int i = 0; tetcast_dataset_format(i, NULL, &here); ++i) {
-    if (strcmp(here, extensions) == 0) return true;
+    if (strcmp(here, extensions) == 0)
+      return true;
   }
   return false;
 }
@@ -23,10 +25,14 @@ static bool has_format(const char *extensions) {
 enum { MOST_FILES = 3 };
 static int write_files(Fixture *fixture, char paths[MOST_FILES][600]) {
   int count = 0;
-  if (sample_exodus(in_folder(fixture, "box.ex2"))) snprintf(paths[count++], 600, "%s", fixture->path);
-  if (has_format(".case .encas")) snprintf(paths[count++], 600, "%s", write_ensight(fixture));
-  if (sample_cgns(in_folder(fixture, "box.cgns"))) snprintf(paths[count++], 600, "%s", fixture->path);
-  if (count == 0) skip();
+  if (sample_exodus(in_folder(fixture, "box.ex2")))
+    snprintf(paths[count++], 600, "%s", fixture->path);
+  if (has_format(".case .encas"))
+    snprintf(paths[count++], 600, "%s", write_ensight(fixture));
+  if (sample_cgns(in_folder(fixture, "box.cgns")))
+    snprintf(paths[count++], 600, "%s", fixture->path);
+  if (count == 0)
+    skip();
   return count;
 }
 
@@ -40,8 +46,10 @@ static TetcastStatus read_once(TetcastContext *context, const char *path) {
 static int open_files(void) {
   int count = 0;
   DIR *folder = opendir("/proc/self/fd");
-  while (folder && readdir(folder)) ++count;
-  if (folder) closedir(folder);
+  while (folder && readdir(folder))
+    ++count;
+  if (folder)
+    closedir(folder);
   return count;
 }
 
@@ -50,7 +58,8 @@ static int open_files(void) {
 static void bury_all(int signal) {
   (void)signal;
   const int error = errno;
-  while (waitpid(-1, NULL, WNOHANG) > 0) continue;
+  while (waitpid(-1, NULL, WNOHANG) > 0)
+    continue;
   errno = error;
 }
 
@@ -59,7 +68,8 @@ static atomic_bool stealing;
 static void *steal(void *unused) {
   (void)unused;
   while (stealing) {
-    if (waitpid(-1, NULL, 0) < 0) nanosleep(&(struct timespec){0, 100000}, NULL);
+    if (waitpid(-1, NULL, 0) < 0)
+      nanosleep(&(struct timespec){0, 100000}, NULL);
   }
   return NULL;
 }
@@ -67,7 +77,8 @@ static void *steal(void *unused) {
 static void read_all(Fixture *fixture, char paths[MOST_FILES][600], int count, const char *what) {
   for (int i = 0; i < count; ++i) {
     fixture->message[0] = '\0';
-    if (read_once(fixture->context, paths[i]) != TETCAST_OK) fail_msg("%s: %s", what, fixture->message);
+    if (read_once(fixture->context, paths[i]) != TETCAST_OK)
+      fail_msg("%s: %s", what, fixture->message);
   }
 }
 
@@ -126,17 +137,20 @@ static void test_programs(void **state) {
                {"#!/bin/sh\nkill -9 $$\n", "crashes on it", TETCAST_ERROR_DATA},
                {"#!/bin/sh\nhead -c 100000 /dev/zero >&3\n", "crashes on it", TETCAST_ERROR_DATA},
                {"#!/bin/sh\nprintf 'gaaaaaaaaaaaaaaaaaaaaaaaaa' >&3\n", "crashes on it", TETCAST_ERROR_DATA},
-               {"#!/bin/sh\nsleep 1000 &\necho $! >>\"$(dirname \"$0\")/sleepers\"\n", "crashes on it", TETCAST_ERROR_DATA}, /* holds the pipe open */
+               {"#!/bin/sh\nsleep 1000 &\necho $! >>\"$(dirname \"$0\")/sleepers\"\n", "crashes on it",
+                TETCAST_ERROR_DATA}, /* holds the pipe open */
                {"#!/bin/sh\nprintf h >&3\nsleep 1\n", "does not come to an end", TETCAST_ERROR_DATA},
                {"#!/bin/sh\nprintf o >&3\n", "is not a file of format Exodus", TETCAST_ERROR_UNSUPPORTED}};
   Fixture *fixture = *state;
   char path[600];
-  if (!sample_exodus(in_folder(fixture, "box.ex2"))) skip();
+  if (!sample_exodus(in_folder(fixture, "box.ex2")))
+    skip();
   snprintf(path, sizeof path, "%s", fixture->path);
   setenv("TETCAST_LIBEXEC", fixture->folder, 1);
   alarm(300); /* that it doesn't hang */
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-    if (cases[i].text) write_program(fixture, cases[i].text);
+    if (cases[i].text)
+      write_program(fixture, cases[i].text);
     assert_int_equal(has_format(".ex2 .exo .e .g"), cases[i].text != NULL);
     for (int ignored = 0; ignored < 2; ++ignored) {
       signal(SIGCHLD, ignored ? SIG_IGN : SIG_DFL);
@@ -164,7 +178,8 @@ typedef struct Job {
 
 static void *read_many(void *argument) {
   Job *job = argument;
-  for (int i = 0; i < ROUNDS; ++i) job->failures += read_once(job->context, job->paths[(i + job->first) % job->count]) != TETCAST_OK;
+  for (int i = 0; i < ROUNDS; ++i)
+    job->failures += read_once(job->context, job->paths[(i + job->first) % job->count]) != TETCAST_OK;
   return NULL;
 }
 
@@ -174,10 +189,13 @@ static atomic_bool busy;
 static void *make_trouble(void *unused) {
   (void)unused;
   while (busy) {
-    for (size_t size = 1; size < 1 << 20; size *= 2) free(malloc(size));
+    for (size_t size = 1; size < 1 << 20; size *= 2)
+      free(malloc(size));
     const pid_t child = fork();
-    if (child == 0) _exit(0);
-    if (child > 0) waitpid(child, NULL, 0);
+    if (child == 0)
+      _exit(0);
+    if (child > 0)
+      waitpid(child, NULL, 0);
   }
   return NULL;
 }

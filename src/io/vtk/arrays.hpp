@@ -15,7 +15,9 @@ struct ArrayName {
   std::string name;
 };
 
-inline bool operator==(const ArrayName &a, const ArrayName &b) { return a.association == b.association && a.name == b.name; }
+inline bool operator==(const ArrayName &a, const ArrayName &b) {
+  return a.association == b.association && a.name == b.name;
+}
 
 // An array of the file that is not in the dataset.
 struct UnreadArray {
@@ -24,7 +26,9 @@ struct UnreadArray {
 };
 
 // "point" or "cell".
-inline const char *word_of(TetcastAssociation association) { return association == TETCAST_POINT ? "point" : "cell"; }
+inline const char *word_of(TetcastAssociation association) {
+  return association == TETCAST_POINT ? "point" : "cell";
+}
 
 // Adds what is not among them yet; a reason is kept.
 void note_unread(std::vector<UnreadArray> *list, const ArrayName &array, const std::string &reason);

@@ -119,19 +119,25 @@ Capture::~Capture() {
 }
 
 Doubt::Doubt() : capture_(current) {
-  if (!capture_) return;
+  if (!capture_)
+    return;
   std::swap(failed_, capture_->failed_);
   std::swap(error_, capture_->error_);
 }
 
 Doubt::~Doubt() {
-  if (!capture_) return;
+  if (!capture_)
+    return;
   std::swap(failed_, capture_->failed_);
   std::swap(error_, capture_->error_);
 }
 
-bool Doubt::failed() const { return capture_ && capture_->failed_; }
-std::string Doubt::error() const { return capture_ ? capture_->error_ : ""; }
+bool Doubt::failed() const {
+  return capture_ && capture_->failed_;
+}
+std::string Doubt::error() const {
+  return capture_ ? capture_->error_ : "";
+}
 
 void Capture::add(const char *text, bool is_error) noexcept {
   try {

@@ -63,8 +63,10 @@ int64_t choose_step(const std::string &path, const TetcastDatasetDesc &desc, con
 // A structured grid as hexahedra, with the arrays it has; null for flat ones and other kinds of dataset.
 Grid to_hexahedra(const std::string &place, vtkDataSet *dataset);
 
-// Puts the pieces together, which are consumed. A lone piece without ghosts stays as it is. Arrays of the wrong length are noted as unread.
-Grid unite(const Reading &reading, std::vector<Piece> *pieces, TetcastDatasetPieces *counts, std::vector<UnreadArray> *unread);
+// Puts the pieces together, which are consumed. A lone piece without ghosts stays as it is. Arrays of the wrong length
+// are noted as unread.
+Grid unite(const Reading &reading, std::vector<Piece> *pieces, TetcastDatasetPieces *counts,
+           std::vector<UnreadArray> *unread);
 
 } // namespace tcv
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gmsh's meshes, MSH 1, 2 and 4.1, as text and as bytes of either order. Views become arrays, and so do the physical groups.
+// Gmsh's meshes, MSH 1, 2 and 4.1, as text and as bytes of either order. Views become arrays, and so do the physical
+// groups.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -27,7 +28,8 @@ namespace {
 // Gmsh numbers the middles of edges by their ends, in rising order, and VTK goes round. Null: as Gmsh has them. What Gmsh's 14-node
 // pyramid has in the middle of its base VTK has in one of 19, of which the rest is not used.
 const short tetrahedron_10[] = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
-const short hexahedron_27[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26};
+const short hexahedron_27[] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  11, 13, 9,  16, 18,
+                               19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26};
 const short wedge_18[] = {0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11, 15, 17, 16};
 const short pyramid_19[] = {0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12, 13, 0, 0, 0, 0, 0};
 
@@ -76,11 +78,16 @@ const HighOrders high_orders[] = {
 
 int nodes_of(unsigned char type, int n) {
   switch (type) {
-  case VTK_LAGRANGE_CURVE: return n + 1;
-  case VTK_LAGRANGE_TRIANGLE: return (n + 1) * (n + 2) / 2;
-  case VTK_LAGRANGE_QUADRILATERAL: return (n + 1) * (n + 1);
-  case VTK_LAGRANGE_TETRAHEDRON: return (n + 1) * (n + 2) * (n + 3) / 6;
-  default: return (n + 1) * (n + 1) * (n + 1);
+  case VTK_LAGRANGE_CURVE:
+    return n + 1;
+  case VTK_LAGRANGE_TRIANGLE:
+    return (n + 1) * (n + 2) / 2;
+  case VTK_LAGRANGE_QUADRILATERAL:
+    return (n + 1) * (n + 1);
+  case VTK_LAGRANGE_TETRAHEDRON:
+    return (n + 1) * (n + 2) * (n + 3) / 6;
+  default:
+    return (n + 1) * (n + 1) * (n + 1);
   }
 }
 
@@ -92,8 +99,10 @@ const std::vector<ElementType> &all_types() {
       for (int i = 0; high.next[i]; ++i) {
         const int n = high.first + i, nodes = nodes_of(high.type, n);
         const bool tetrahedron = high.type == VTK_LAGRANGE_TETRAHEDRON;
-        if (tetrahedron || high.type == VTK_LAGRANGE_HEXAHEDRON) orders.push_back(tetrahedron ? tcv::gmsh_tetrahedron(n) : tcv::gmsh_hexahedron(n));
-        else orders.emplace_back();
+        if (tetrahedron || high.type == VTK_LAGRANGE_HEXAHEDRON)
+          orders.push_back(tetrahedron ? tcv::gmsh_tetrahedron(n) : tcv::gmsh_hexahedron(n));
+        else
+          orders.emplace_back();
         list.push_back({high.next[i], nodes, high.type, nodes, orders.back().empty() ? nullptr : orders.back().data()});
       }
     }
@@ -166,11 +175,14 @@ void Reader::read_format() {
   const int64_t binary = in_.text_integer("0 or 1"), size = in_.text_integer("the size of numbers");
   const bool known = (version_ >= 2 && version_ < 3) || version_ == 4.1;
   if (!known) {
-    tcv::fail(TETCAST_ERROR_UNSUPPORTED, "%s: is of version %g of Gmsh's format; 1, 2 and 4.1 are read, which gmsh -save -format msh41 makes of it",
-              reading_.path.c_str(), version_);
+    tcv::fail(
+        TETCAST_ERROR_UNSUPPORTED,
+        "%s: is of version %g of Gmsh's format; 1, 2 and 4.1 are read, which gmsh -save -format msh41 makes of it",
+        reading_.path.c_str(), version_);
   }
   if ((binary != 0 && binary != 1) || (binary && size != 8)) { // in text the size means nothing
-    in_.fail("0 or 1 and numbers of 8 bytes are known, not '%lld %lld'", static_cast<long long>(binary), static_cast<long long>(size));
+    in_.fail("0 or 1 and numbers of 8 bytes are known, not '%lld %lld'", static_cast<long long>(binary),
+             static_cast<long long>(size));
   }
   in_.line();
   if (!binary) return;
@@ -258,7 +270,9 @@ void Reader::read_nodes() {
 const ElementType &Reader::type_of(int64_t id) const {
   const ElementType *type = find_type(id);
   if (type) return *type;
-  tcv::fail(TETCAST_ERROR_UNSUPPORTED, "%s: holds elements of Gmsh's type %lld, which are not read: above second order only tetrahedra and hexahedra with all nodes are",
+  tcv::fail(TETCAST_ERROR_UNSUPPORTED,
+            "%s: holds elements of Gmsh's type %lld, which are not read: above second order only tetrahedra and "
+            "hexahedra with all nodes are",
             reading_.path.c_str(), static_cast<long long>(id));
 }
 
@@ -312,7 +326,8 @@ void Reader::read_elements() {
           const int64_t tag = in_.integer("a tag");
           if (k == 0) group = tag;
         }
-        if (first() && in_.integer("a number of nodes") != type.nodes) in_.fail("element %lld has not the %d nodes of its type", static_cast<long long>(number), type.nodes);
+        if (first() && in_.integer("a number of nodes") != type.nodes)
+          in_.fail("element %lld has not the %d nodes of its type", static_cast<long long>(number), type.nodes);
         add_element(type, number, group);
       }
       done += here;
@@ -346,7 +361,8 @@ void Reader::read_section(const std::string &name, Section::Kind kind) {
     if (in_.left() == 0) in_.fail("truncated: a name is to come");
     const std::string text = in_.line();
     const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
-    if (i == 0) section_name_ = section.name = quoted ? text.substr(1, text.size() - 2) : text;
+    if (i == 0)
+      section_name_ = section.name = quoted ? text.substr(1, text.size() - 2) : text;
   }
   const int64_t reals = in_.text_integer("a number of times");
   for (int64_t i = 0; i < reals; ++i) {
@@ -382,7 +398,9 @@ void Reader::read_corner_values(Section *section, vtkDoubleArray *array) {
     for (double &value : values) value = section->at.number("a value");
     if (cell < 0) section->at.fail("a value is of an element that there is not");
     const vtkIdType points = ends_->GetValue(cell + 1) - ends_->GetValue(cell);
-    const auto type = std::find_if(all_types().begin(), all_types().end(), [&](const ElementType &one) { return one.type == types_->GetValue(cell) && one.points == points; });
+    const auto type = std::find_if(all_types().begin(), all_types().end(), [&](const ElementType &one) {
+      return one.type == types_->GetValue(cell) && one.points == points;
+    });
     if (nodes > type->nodes) section->at.fail("an element of %d nodes has values at %lld", type->nodes, static_cast<long long>(nodes));
     for (int k = 0; k < std::min(type->nodes, type->points); ++k) {
       const int from = type->order ? type->order[k] : k;
@@ -436,7 +454,8 @@ void Reader::try_section(const std::string &name, Section::Kind kind, tcv::Conte
   } catch (const tcv::Failure &failure) {
     in_ = begin;
     in_.skip_section(name); // which fails where it does not end
-    tcv::note_unread(&contents->unread, {kind == Section::OF_ELEMENTS ? TETCAST_CELL : TETCAST_POINT, section_name_}, reason_of(failure));
+    tcv::note_unread(&contents->unread, {kind == Section::OF_ELEMENTS ? TETCAST_CELL : TETCAST_POINT, section_name_},
+                     reason_of(failure));
   }
 }
 
@@ -463,8 +482,10 @@ void Reader::add_views(vtkUnstructuredGrid *grid, tcv::Contents *contents) {
     }
     try {
       const auto array = values_of(section);
-      if (of_elements) grid->GetCellData()->AddArray(array);
-      else grid->GetPointData()->AddArray(array);
+      if (of_elements)
+        grid->GetCellData()->AddArray(array);
+      else
+        grid->GetPointData()->AddArray(array);
     } catch (const tcv::Failure &failure) {
       tcv::note_unread(&contents->unread, name, reason_of(failure));
     }
@@ -485,16 +506,22 @@ tcv::Grid Reader::make_grid() {
 void Reader::read(tcv::Contents *contents) {
   std::string name;
   while (in_.next_section(&name)) {
-    if (version_ == 0 && name == "NOD") version_ = 1;
+    if (version_ == 0 && name == "NOD")
+      version_ = 1;
     if (version_ == 0 && name != "MeshFormat" && name != "Comments") in_.fail("section $MeshFormat is to come first");
     if (name == "MeshFormat" && version_ == 0) read_format();
     else if (name == "Entities" || name == "PartitionedEntities") read_entities(name[0] == 'P');
-    else if (name == (first() ? "NOD" : "Nodes")) read_nodes();
-    else if (name == (first() ? "ELM" : "Elements")) read_elements();
+    else if (name == (first() ? "NOD" : "Nodes"))
+      read_nodes();
+    else if (name == (first() ? "ELM" : "Elements"))
+      read_elements();
     else {
-      if (name == "NodeData") try_section(name, Section::OF_NODES, contents);
-      else if (name == "ElementData") try_section(name, Section::OF_ELEMENTS, contents);
-      else if (name == "ElementNodeData") try_section(name, Section::OF_ELEMENTS_NODES, contents);
+      if (name == "NodeData")
+        try_section(name, Section::OF_NODES, contents);
+      else if (name == "ElementData")
+        try_section(name, Section::OF_ELEMENTS, contents);
+      else if (name == "ElementNodeData")
+        try_section(name, Section::OF_ELEMENTS_NODES, contents);
       else in_.skip_section(name);
       continue;
     }
@@ -520,7 +547,9 @@ void read_gmsh(const Reading &reading, Contents *contents) {
   const std::string bytes = file_contents(reading.path.c_str());
   const size_t begin = bytes.find_first_not_of(" \t\r\n");
   if (begin == std::string::npos || bytes[begin] != '$') {
-    fail(TETCAST_ERROR_DATA, "%s: is not a Gmsh file: these begin with $MeshFormat or $NOD; other programs call files .msh, too", reading.path.c_str());
+    fail(TETCAST_ERROR_DATA,
+         "%s: is not a Gmsh file: these begin with $MeshFormat or $NOD; other programs call files .msh, too",
+         reading.path.c_str());
   }
   Reader(reading, bytes).read(contents);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Legacy .vtk files. VTK's own loops over their sections write beyond their memory when counts or cells are damaged, and give up at numbers such
-// as NaN; its functions for single words are sound, and do the work here.
+// Legacy .vtk files. VTK's own loops over their sections write beyond their memory when counts or cells are damaged,
+// and give up at numbers such as NaN; its functions for single words are sound, and do the work here.
 #include "common.hpp"
 #include "files.hpp"
 #include "formats.hpp"
@@ -62,32 +62,51 @@ const struct {
                    {"float", VTK_FLOAT, 4},
                    {"double", VTK_DOUBLE, 8}};
 
-const char *const attribute_keywords[] = {"scalars",      "vectors",      "normals",   "tensors",       "tensors6",            "field",
-                                          "global_ids",   "pedigree_ids", "edge_flags", "color_scalars", "texture_coordinates", "lookup_table",
-                                          "point_data",   "cell_data",    "metadata"};
+const char *const attribute_keywords[] = {"scalars",
+                                          "vectors",
+                                          "normals",
+                                          "tensors",
+                                          "tensors6",
+                                          "field",
+                                          "global_ids",
+                                          "pedigree_ids",
+                                          "edge_flags",
+                                          "color_scalars",
+                                          "texture_coordinates",
+                                          "lookup_table",
+                                          "point_data",
+                                          "cell_data",
+                                          "metadata"};
 
 std::string lower_case(std::string text) {
-  for (char &c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  for (char &c : text)
+    c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   return text;
 }
 
 bool is_attribute_keyword(const std::string &word) {
   const std::string lower = lower_case(word);
-  return std::any_of(std::begin(attribute_keywords), std::end(attribute_keywords), [&](const char *one) { return lower == one; });
+  return std::any_of(std::begin(attribute_keywords), std::end(attribute_keywords),
+                     [&](const char *one) { return lower == one; });
 }
 
 void swap_bytes(void *values, int64_t count, int size) {
-  if (size == 2) vtkByteSwap::Swap2BERange(values, static_cast<size_t>(count));
-  if (size == 4) vtkByteSwap::Swap4BERange(values, static_cast<size_t>(count));
-  if (size == 8) vtkByteSwap::Swap8BERange(values, static_cast<size_t>(count));
+  if (size == 2)
+    vtkByteSwap::Swap2BERange(values, static_cast<size_t>(count));
+  if (size == 4)
+    vtkByteSwap::Swap4BERange(values, static_cast<size_t>(count));
+  if (size == 8)
+    vtkByteSwap::Swap8BERange(values, static_cast<size_t>(count));
 }
 
 class LegacyFile {
 public:
-  explicit LegacyFile(const char *path, std::vector<tcv::UnreadArray> *unread = nullptr) : path_(path), size_(tcv::file_size(path)), unread_(unread) {
+  explicit LegacyFile(const char *path, std::vector<tcv::UnreadArray> *unread = nullptr)
+      : path_(path), size_(tcv::file_size(path)), unread_(unread) {
     if (!reader_->OpenVTKFile(path) || !reader_->ReadHeader(path) || !next() || !is("dataset") || !next()) damaged("the header");
   }
-  LegacyFile(const char *path, const char *type, std::vector<tcv::UnreadArray> *unread = nullptr) : LegacyFile(path, unread) {
+  LegacyFile(const char *path, const char *type, std::vector<tcv::UnreadArray> *unread = nullptr)
+      : LegacyFile(path, unread) {
     if (!is(type)) damaged("the header");
   }
   ~LegacyFile() { reader_->CloseVTKFile(); }
@@ -135,7 +154,8 @@ public:
         tcv::fail(TETCAST_ERROR_DATA, "%s: %s: cell %lld does not fit into the %lld numbers there are", path_, section,
                   static_cast<long long>(i), static_cast<long long>(size));
       }
-      for (int64_t j = 0; j < corners; ++j) indices->SetValue(used++, stream[at++]);
+      for (int64_t j = 0; j < corners; ++j)
+        indices->SetValue(used++, stream[at++]);
       offsets->SetValue(i + 1, used);
     }
     result->SetData(offsets, indices);
@@ -150,7 +170,8 @@ public:
     result->SetNumberOfValues(size);
     for (int64_t i = 0; i < size; ++i) {
       if (types[i] < 0 || types[i] > 255) {
-        tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: there is no cell type %d", path_, static_cast<long long>(i), types[i]);
+        tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: there is no cell type %d", path_, static_cast<long long>(i),
+                  types[i]);
       }
       result->SetValue(i, static_cast<unsigned char>(types[i]));
     }
@@ -170,7 +191,8 @@ public:
     }
   }
   void numbers(const char *section, double result[3]) {
-    if (tcv::NumberReader(stream()).read(result, 3) < 3) damaged(section);
+    if (tcv::NumberReader(stream()).read(result, 3) < 3)
+      damaged(section);
   }
   vtkSmartPointer<vtkDataArray> coordinates(const char *section, int64_t wanted) {
     const int64_t values_here = count(section);
@@ -227,7 +249,8 @@ private:
     lose(reason);
     stream().clear();
     while (!binary() && next()) { // to what begins next
-      if (!is_attribute_keyword(word_)) continue;
+      if (!is_attribute_keyword(word_))
+        continue;
       stream().seekg(-static_cast<std::streamoff>(std::strlen(word_)), std::ios::cur);
       return true;
     }
@@ -235,7 +258,8 @@ private:
   }
 
   void lose(const std::string &reason) {
-    if (unread_) tcv::note_unread(unread_, {association_, name_}, reason);
+    if (unread_)
+      tcv::note_unread(unread_, {association_, name_}, reason);
   }
 
   void attribute(vtkDataSetAttributes *target, int64_t have) {
@@ -273,7 +297,8 @@ private:
   void read_scalars(vtkDataSetAttributes *target, int64_t have) {
     char line[256], name[256] = "", type[256] = "";
     int components = 1;
-    if (!reader_->ReadLine(line) || std::sscanf(line, "%255s %255s %d", name, type, &components) < 2) damaged("SCALARS");
+    if (!reader_->ReadLine(line) || std::sscanf(line, "%255s %255s %d", name, type, &components) < 2)
+      damaged("SCALARS");
     begin_array(name);
     skip_table_name();
     add(target, values(type, have, components), vtkDataSetAttributes::SCALARS);
@@ -287,9 +312,12 @@ private:
     std::string letters;
     while (letters.size() < keyword.size()) {
       const int c = in.get();
-      if (c == EOF || (letters.empty() && binary() && c == 0)) break;
-      if (!(letters.empty() && c <= ' ')) letters += static_cast<char>(c);
-      else if (binary()) break; // a number may be anything
+      if (c == EOF || (letters.empty() && binary() && c == 0))
+        break;
+      if (!(letters.empty() && c <= ' '))
+        letters += static_cast<char>(c);
+      else if (binary())
+        break; // a number may be anything
     }
     in.clear();
     if (lower_case(letters) == keyword) {
@@ -315,10 +343,13 @@ private:
       const int64_t components = count("FIELD"), tuples = count("FIELD");
       try {
         const Array array = values(word("FIELD"), tuples, components);
-        if (target && array) add(target, array, -1);
+        if (target && array)
+          add(target, array, -1);
       } catch (const Unreadable &unreadable) {
-        if (!unreadable.behind) throw;
-        if (target) lose(unreadable.reason);
+        if (!unreadable.behind)
+          throw;
+        if (target)
+          lose(unreadable.reason);
       }
     }
   }
@@ -338,7 +369,8 @@ private:
     if (!next() || !is(keyword)) damaged("the list of cells");
     const Array numbers = needed("the list of cells", word(keyword), size, 1);
     const int type = numbers->GetDataType();
-    if (type != VTK_INT && type != VTK_LONG && type != VTK_LONG_LONG && type != VTK_ID_TYPE) damaged("the list of cells");
+    if (type != VTK_INT && type != VTK_LONG && type != VTK_LONG_LONG && type != VTK_ID_TYPE)
+      damaged("the list of cells");
     return numbers;
   }
 
@@ -346,10 +378,12 @@ private:
   Array needed(const char *section, const std::string &type, int64_t tuples, int64_t components) {
     try {
       const Array array = values(type, tuples, components);
-      if (array) return array;
+      if (array)
+        return array;
       damaged(section);
     } catch (const Unreadable &unreadable) {
-      tcv::fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: %s can't be read: %s", path_, section, unreadable.reason.c_str());
+      tcv::fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: %s can't be read: %s", path_, section,
+                unreadable.reason.c_str());
     }
   }
 
@@ -357,18 +391,25 @@ private:
   Array values(const std::string &type_name, int64_t tuples, int64_t components) {
     const std::string lower = lower_case(type_name);
     if (components < 1 || components > 8 * size_ || tuples > 8 * size_ / components) { // bits: eight a byte
-      throw Unreadable{std::to_string(tuples) + " × " + std::to_string(components) + " values are more than the file can hold", false};
+      throw Unreadable{std::to_string(tuples) + " × " + std::to_string(components) +
+                           " values are more than the file can hold",
+                       false};
     }
     const int64_t count = tuples * components;
-    if (lower.compare(0, 6, "string") == 0 || lower.compare(0, 11, "utf8_string") == 0) return skip_strings(count), nullptr;
+    if (lower.compare(0, 6, "string") == 0 || lower.compare(0, 11, "utf8_string") == 0)
+      return skip_strings(count), nullptr;
     const auto *type = std::find_if(std::begin(value_types), std::end(value_types), [&](const auto &one) {
-      return lower.compare(0, std::strlen(one.name), one.name) == 0 && (std::strcmp(one.name, "char") != 0 || lower == "char");
+      return lower.compare(0, std::strlen(one.name), one.name) == 0 &&
+             (std::strcmp(one.name, "char") != 0 || lower == "char");
     });
-    if (type == std::end(value_types)) throw Unreadable{"there is no type '" + type_name + "'", false};
+    if (type == std::end(value_types))
+      throw Unreadable{"there is no type '" + type_name + "'", false};
     const int64_t left = size_ - static_cast<int64_t>(stream().tellg());
     const int64_t bytes = type->size ? count * type->size : (count + 7) / 8;
-    if (binary() ? bytes > left : count > (left + 1) / 2) throw Unreadable{"it has less data than the " + std::to_string(count) + " values it should have", false};
-    return binary() ? binary_values(type->type, type->size, tuples, components) : text_values(type->type, tuples, components);
+    if (binary() ? bytes > left : count > (left + 1) / 2)
+      throw Unreadable{"it has less data than the " + std::to_string(count) + " values it should have", false};
+    return binary() ? binary_values(type->type, type->size, tuples, components)
+                    : text_values(type->type, tuples, components);
   }
 
   static Array make_array(int type, int64_t tuples, int64_t components) {
@@ -386,10 +427,14 @@ private:
     const bool narrow = type == VTK_ID_TYPE; // written as four bytes
     Array array = make_array(narrow ? VTK_INT : type, tuples, components);
     const int64_t bytes = size ? count * size : (count + 7) / 8;
-    if (bytes > 0) in.read(static_cast<char *>(array->GetVoidPointer(0)), bytes);
-    if (!in) throw Unreadable{"it ends early", false};
-    if (size > 1) swap_bytes(array->GetVoidPointer(0), count, size);
-    if (!narrow) return array;
+    if (bytes > 0)
+      in.read(static_cast<char *>(array->GetVoidPointer(0)), bytes);
+    if (!in)
+      throw Unreadable{"it ends early", false};
+    if (size > 1)
+      swap_bytes(array->GetVoidPointer(0), count, size);
+    if (!narrow)
+      return array;
     auto wide = vtkSmartPointer<vtkIdTypeArray>::New();
     wide->DeepCopy(array);
     return wide;
@@ -399,17 +444,23 @@ private:
     tcv::NumberReader reader(stream());
     const int64_t have = reader.read(values, count);
     *overflowed = reader.overflowed();
-    if (have == count) return;
+    if (have == count)
+      return;
     const std::string bad = reader.word();
-    if (bad.empty()) throw Unreadable{"it has " + std::to_string(have) + " of " + std::to_string(count) + " values", false};
-    const std::string reason = "line " + std::to_string(line()) + ": '" + bad.substr(0, 40) + "' is not a number of its type";
+    if (bad.empty())
+      throw Unreadable{"it has " + std::to_string(have) + " of " + std::to_string(count) + " values", false};
+    const std::string reason =
+        "line " + std::to_string(line()) + ": '" + bad.substr(0, 40) + "' is not a number of its type";
     std::string word = bad;
     for (int64_t i = have + 1;; ++i) { // the rest of the values; if one is a keyword, there are fewer
       if (is_attribute_keyword(word)) {
         stream().seekg(-static_cast<std::streamoff>(word.size()), std::ios::cur);
-        throw Unreadable{word == bad ? "it has " + std::to_string(have) + " of " + std::to_string(count) + " values" : reason, false};
+        throw Unreadable{word == bad ? "it has " + std::to_string(have) + " of " + std::to_string(count) + " values"
+                                     : reason,
+                         false};
       }
-      if (i >= count || !(stream() >> word)) break;
+      if (i >= count || !(stream() >> word))
+        break;
     }
     throw Unreadable{reason, true};
   }
@@ -427,10 +478,9 @@ private:
       return bits;
     }
     Array array = make_array(type, tuples, components);
-    switch (type) {
-      vtkTemplateMacro(read_text(static_cast<VTK_TT *>(array->GetVoidPointer(0)), count, &overflowed));
-    }
-    if (!overflowed || type != VTK_FLOAT) return array;
+    switch (type) { vtkTemplateMacro(read_text(static_cast<VTK_TT *>(array->GetVoidPointer(0)), count, &overflowed)); }
+    if (!overflowed || type != VTK_FLOAT)
+      return array;
     stream().clear();
     stream().seekg(start);
     array = make_array(VTK_DOUBLE, tuples, components);
@@ -451,11 +501,14 @@ private:
       const int first = in.get();
       const int more = first >> 6 == 3 ? 0 : first >> 6 == 2 ? 1 : first >> 6 == 1 ? 3 : 7;
       uint64_t length = static_cast<uint64_t>(first & (more == 7 ? 255 : 63));
-      for (int k = 0; k < more; ++k) length = length << 8 | static_cast<uint64_t>(in.get() & 255);
-      if (first == EOF || length > static_cast<uint64_t>(size_)) throw Unreadable{"its strings are damaged", false};
+      for (int k = 0; k < more; ++k)
+        length = length << 8 | static_cast<uint64_t>(in.get() & 255);
+      if (first == EOF || length > static_cast<uint64_t>(size_))
+        throw Unreadable{"its strings are damaged", false};
       in.seekg(static_cast<std::streamoff>(length), std::ios::cur);
     }
-    if (!in) throw Unreadable{"it ends early", false};
+    if (!in)
+      throw Unreadable{"it ends early", false};
   }
 
   // The line that the stream has come to, from 1.
@@ -469,7 +522,8 @@ private:
     for (int64_t left = here; left > 0;) {
       in.read(part.data(), std::min<int64_t>(left, static_cast<int64_t>(part.size())));
       const auto got = in.gcount();
-      if (got <= 0) break;
+      if (got <= 0)
+        break;
       lines += std::count(part.begin(), part.begin() + got, '\n');
       left -= got;
     }
@@ -485,8 +539,10 @@ private:
   }
 
   void add(vtkDataSetAttributes *target, vtkDataArray *array, int attribute) {
-    if (!array) return;
-    if (target->HasArray(name_.c_str())) return lose("it is the second of that name");
+    if (!array)
+      return;
+    if (target->HasArray(name_.c_str()))
+      return lose("it is the second of that name");
     array->SetName(name_.c_str());
     const int index = target->AddArray(array);
     if (attribute >= 0 && !target->GetAbstractAttribute(attribute)) target->SetActiveAttribute(index, attribute);
@@ -639,14 +695,16 @@ vtkSmartPointer<vtkDataSet> read_structured(LegacyFile *file) {
 namespace tcv {
 
 void read_legacy_grid(const Reading &reading, Contents *contents) {
-  const auto grid = captured(reading.context, reading.path.c_str(), [&] { return read_grid(reading.path.c_str(), &contents->unread); });
+  const auto grid = captured(reading.context, reading.path.c_str(),
+                             [&] { return read_grid(reading.path.c_str(), &contents->unread); });
   add_grid(reading, reading.block, grid, contents);
 }
 
 void read_legacy_structured(const Reading &reading, Contents *contents) {
   const auto grid = captured(reading.context, reading.path.c_str(), [&] {
     LegacyFile file(reading.path.c_str(), &contents->unread);
-    if (file.is("rectilinear_grid")) return read_rectilinear(&file);
+    if (file.is("rectilinear_grid"))
+      return read_rectilinear(&file);
     return file.is("structured_grid") ? read_structured(&file) : read_image(&file);
   });
   add_grid(reading, reading.block, grid, contents);

@@ -68,7 +68,8 @@ std::string beside(const std::string &path, const std::string &file) {
   const std::string folder = slash == std::string::npos ? "" : path.substr(0, slash + 1);
   const auto place = [&](const std::string &name) { return name[0] == '/' ? name : folder + name; };
   const std::string given = place(file);
-  if (file.find('\\') == std::string::npos || access(given.c_str(), F_OK) == 0) return given;
+  if (file.find('\\') == std::string::npos || access(given.c_str(), F_OK) == 0)
+    return given;
   std::string turned = file;
   std::replace(turned.begin(), turned.end(), '\\', '/');
   return place(turned);

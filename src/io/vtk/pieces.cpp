@@ -218,7 +218,8 @@ void warn_of_differences(const tcv::Reading &reading, const tcv::Differences &di
 
 namespace tcv {
 
-Grid unite(const Reading &reading, std::vector<Piece> *pieces, TetcastDatasetPieces *counts, std::vector<UnreadArray> *unread) {
+Grid unite(const Reading &reading, std::vector<Piece> *pieces, TetcastDatasetPieces *counts,
+           std::vector<UnreadArray> *unread) {
   const bool lone = pieces->size() == 1;
   for (const Piece &piece : *pieces) { // empty ones are nothing but parts of a machine that had no work
     if (piece.grid->GetNumberOfCells() > 0) check_piece(piece);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formats that programs of their own read (program.cpp): VTK's readers of these crash, hang and print on some damaged files, and the libraries
-// that they bring know nothing of threads. A program is started by posix_spawn(), which copies nothing of this process: no lock that a
-// thread holds, no memory. What becomes of it is told by its pipe alone: the host may ignore SIGCHLD, or wait for every child there is.
+// Formats that programs of their own read (program.cpp): VTK's readers of these crash, hang and print on some damaged
+// files, and the libraries that they bring know nothing of threads. A program is started by posix_spawn(), which copies
+// nothing of this process: no lock that a thread holds, no memory. What becomes of it is told by its pipe alone: the
+// host may ignore SIGCHLD, or wait for every child there is.
 #include "plugin.hpp"
 
 #include <algorithm>
@@ -25,24 +26,29 @@ extern char **environ;
 
 namespace tcv {
 
-// Where the programs are: in the folder that $TETCAST_LIBEXEC names, where installing puts them as seen from this library, or beside
-// it in a folder of builds.
+// Where the programs are: in the folder that $TETCAST_LIBEXEC names, where installing puts them as seen from this
+// library, or beside it in a folder of builds.
 static std::string program_path(const char *name) {
   const std::string program = std::string("/tetcast-vtk-") + name;
   const char *named = std::getenv("TETCAST_LIBEXEC");
-  if (named && *named) return named + program;
+  if (named && *named)
+    return named + program;
   Dl_info here;
   std::string folder = ".";
   if (dladdr(reinterpret_cast<void *>(&tetcast_dataset_read), &here) && here.dli_fname) {
     const std::string own = here.dli_fname;
     const size_t slash = own.rfind('/');
-    if (slash != std::string::npos) folder = own.substr(0, slash);
+    if (slash != std::string::npos)
+      folder = own.substr(0, slash);
   }
-  const std::string installed = folder + "/" TETCAST_VTK_LIBEXEC + program, built = folder + "/../libexec/tetcast" + program;
+  const std::string installed = folder + "/" TETCAST_VTK_LIBEXEC + program,
+                    built = folder + "/../libexec/tetcast" + program;
   return access(installed.c_str(), X_OK) != 0 && access(built.c_str(), X_OK) == 0 ? built : installed;
 }
 
-bool plugin_exists(const char *name) { return access(program_path(name).c_str(), X_OK) == 0; }
+bool plugin_exists(const char *name) {
+  return access(program_path(name).c_str(), X_OK) == 0;
+}
 
 // ── a program that runs ──
 
@@ -56,19 +62,23 @@ class Program {
 public:
   Program(const std::string &program, const PluginRequest &request) {
     int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) no_process(request, errno);
+    if (pipe2(ends, O_CLOEXEC) != 0)
+      no_process(request, errno);
     file_ = ends[0];
     const int error = start(program, arguments_of(request), ends[1]);
     close(ends[1]);
-    if (error == 0) return;
+    if (error == 0)
+      return;
     close(file_);
-    if (error != ENOENT && error != EACCES) no_process(request, error);
-    fail(TETCAST_ERROR_UNSUPPORTED, "%s: reading this format needs the program %s, which can't be started: %s", request.path.c_str(), program.c_str(),
-         std::strerror(error));
+    if (error != ENOENT && error != EACCES)
+      no_process(request, error);
+    fail(TETCAST_ERROR_UNSUPPORTED, "%s: reading this format needs the program %s, which can't be started: %s",
+         request.path.c_str(), program.c_str(), std::strerror(error));
   }
   ~Program() { // one that goes on has nobody to write to, which ends it
     close(file_);
-    while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR) continue;
+    while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR)
+      continue;
   }
   Program(const Program &) = delete;
   Program &operator=(const Program &) = delete;
@@ -78,17 +88,20 @@ public:
 
 private:
   [[noreturn]] static void no_process(const PluginRequest &request, int error) {
-    fail(TETCAST_ERROR_MEMORY, "%s: no process could be started to read it: %s", request.path.c_str(), std::strerror(error));
+    fail(TETCAST_ERROR_MEMORY, "%s: no process could be started to read it: %s", request.path.c_str(),
+         std::strerror(error));
   }
 
   // With all signals as they are by default, and none held back, whatever the host does with its own.
   int start(const std::string &program, const std::vector<std::string> &arguments, int channel) {
     std::vector<char *> list = {const_cast<char *>(program.c_str())};
-    for (const std::string &one : arguments) list.push_back(const_cast<char *>(one.c_str()));
+    for (const std::string &one : arguments)
+      list.push_back(const_cast<char *>(one.c_str()));
     list.push_back(nullptr);
     posix_spawn_file_actions_t files;
     posix_spawnattr_t attributes;
-    if (posix_spawn_file_actions_init(&files) != 0) return ENOMEM;
+    if (posix_spawn_file_actions_init(&files) != 0)
+      return ENOMEM;
     if (posix_spawnattr_init(&attributes) != 0) {
       posix_spawn_file_actions_destroy(&files);
       return ENOMEM;
@@ -100,7 +113,8 @@ private:
     posix_spawnattr_setsigdefault(&attributes, &all);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
     int error = posix_spawn_file_actions_adddup2(&files, channel, 3);
-    if (error == 0) error = posix_spawn(&process_, program.c_str(), &files, &attributes, list.data(), environ);
+    if (error == 0)
+      error = posix_spawn(&process_, program.c_str(), &files, &attributes, list.data(), environ);
     posix_spawn_file_actions_destroy(&files);
     posix_spawnattr_destroy(&attributes);
     return error;
@@ -117,7 +131,9 @@ struct Trial {
   bool of_array = false; // what was tried last was this one
 };
 
-static TetcastAssociation association_of(int64_t value) { return value == TETCAST_CELL ? TETCAST_CELL : TETCAST_POINT; }
+static TetcastAssociation association_of(int64_t value) {
+  return value == TETCAST_CELL ? TETCAST_CELL : TETCAST_POINT;
+}
 
 static void take_unread(WireReader *wire, bool lost, Contents *contents) {
   const TetcastAssociation association = association_of(wire->number());
@@ -127,12 +143,14 @@ static void take_unread(WireReader *wire, bool lost, Contents *contents) {
 
 static void take_block(const Reading &reading, WireReader *wire, WireRecord record, Contents *contents) {
   const std::string block = wire->text();
-  if (record == WIRE_GRID) return add_grid(reading, block, wire->grid(), contents);
+  if (record == WIRE_GRID)
+    return add_grid(reading, block, wire->grid(), contents);
   list_block(block, contents);
   contents->surfaces += record == WIRE_FLAT;
 }
 
-// True when all has been told; false when nothing more will be, as `trial` ended the program. Fails on what is wrong with the file.
+// True when all has been told; false when nothing more will be, as `trial` ended the program. Fails on what is wrong
+// with the file.
 static bool listen(const Reading &reading, const char *format, WireReader *wire, Contents *contents, Trial *trial) {
   const char *path = reading.path.c_str();
   try {
@@ -146,24 +164,35 @@ static bool listen(const Reading &reading, const char *format, WireReader *wire,
         break;
       }
       case WIRE_KNOWN:
-      case WIRE_LOST: take_unread(wire, record == WIRE_LOST, contents); break;
+      case WIRE_LOST:
+        take_unread(wire, record == WIRE_LOST, contents);
+        break;
       case WIRE_TIMES:
         contents->times.clear();
-        for (int64_t count = wire->number(); count > 0; --count) contents->times.push_back(wire->real());
+        for (int64_t count = wire->number(); count > 0; --count)
+          contents->times.push_back(wire->real());
         contents->step = wire->number();
         break;
-      case WIRE_WARN: tetcast_context_message(reading.context, TETCAST_SEVERITY_WARNING, "%s: %s", path, wire->text().c_str()); break;
+      case WIRE_WARN:
+        tetcast_context_message(reading.context, TETCAST_SEVERITY_WARNING, "%s: %s", path, wire->text().c_str());
+        break;
       case WIRE_BLOCK:
       case WIRE_FLAT:
-      case WIRE_GRID: take_block(reading, wire, record, contents); break;
-      case WIRE_END: return true;
+      case WIRE_GRID:
+        take_block(reading, wire, record, contents);
+        break;
+      case WIRE_END:
+        return true;
       case WIRE_FAILED: {
         const auto status = static_cast<TetcastStatus>(wire->number());
         throw Failure{status, wire->text()};
       }
-      case WIRE_OTHER: fail(TETCAST_ERROR_UNSUPPORTED, "%s: is not a file of format %s, or damaged", path, format);
-      case WIRE_ENDLESS: return false;
-      default: throw WireBroken();
+      case WIRE_OTHER:
+        fail(TETCAST_ERROR_UNSUPPORTED, "%s: is not a file of format %s, or damaged", path, format);
+      case WIRE_ENDLESS:
+        return false;
+      default:
+        throw WireBroken();
       }
     }
   } catch (const WireBroken &) {
@@ -171,13 +200,20 @@ static bool listen(const Reading &reading, const char *format, WireReader *wire,
   }
 }
 
-// Reads by program `name`. Of a program that is ended by what it tries, another goes on: each array on its own first, then without those
-// that are at fault.
+// Reads by program `name`. Of a program that is ended by what it tries, another goes on: each array on its own first,
+// then without those that are at fault.
 static void read_plugin(const Reading &reading, const char *name, const char *format, Contents *contents) {
   const char *path = reading.path.c_str();
   const std::string program = program_path(name);
-  PluginRequest request = {reading.path, reading.block, reading.desc->block, reading.desc->only, reading.desc->step, reading.desc->time,
-                           !reading.desc->no_displacement, false, {}};
+  PluginRequest request = {reading.path,
+                           reading.block,
+                           reading.desc->block,
+                           reading.desc->only,
+                           reading.desc->step,
+                           reading.desc->time,
+                           !reading.desc->no_displacement,
+                           false,
+                           {}};
   const int patience = 6;
   for (int i = 0; i < patience; ++i) {
     Contents found;
@@ -190,19 +226,25 @@ static void read_plugin(const Reading &reading, const char *name, const char *fo
     }
     if (whole) {
       std::move(found.pieces.begin(), found.pieces.end(), std::back_inserter(contents->pieces));
-      for (const std::string &block : found.blocks) list_block(block, contents);
-      for (const UnreadArray &one : found.unread) note_unread(&contents->unread, one.array, one.reason);
-      for (const ArrayName &array : request.without) note_unread(&contents->unread, array, std::string("VTK's reader of ") + format + " files ends on it");
+      for (const std::string &block : found.blocks)
+        list_block(block, contents);
+      for (const UnreadArray &one : found.unread)
+        note_unread(&contents->unread, one.array, one.reason);
+      for (const ArrayName &array : request.without)
+        note_unread(&contents->unread, array, std::string("VTK's reader of ") + format + " files ends on it");
       contents->surfaces += found.surfaces;
       contents->times = found.times;
       contents->step = found.step;
       return;
     }
-    if (request.apart && !trial.of_array) break;
+    if (request.apart && !trial.of_array)
+      break;
     request.apart = true;
-    if (trial.of_array) request.without.push_back(trial.array);
+    if (trial.of_array)
+      request.without.push_back(trial.array);
   }
-  fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: VTK's reader of %s files crashes on it or does not come to an end", path, format);
+  fail(TETCAST_ERROR_DATA,
+       "%s: truncated or damaged: VTK's reader of %s files crashes on it or does not come to an end", path, format);
 }
 
 void read_exodus(const Reading &reading, Contents *contents) {

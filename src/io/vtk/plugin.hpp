@@ -14,7 +14,7 @@ namespace tcv {
 
 struct PluginRequest {
   std::string path;
-  std::string place;                         // the block that the file is in, "" if it is none
+  std::string place;                            // the block that the file is in, "" if it is none
   const char *block = nullptr, *only = nullptr; // of the description
   int64_t step = 0;
   double time = std::nan("");

@@ -8,7 +8,8 @@ namespace {
 class Cgns : public tcv::VtkSource<vtkCGNSReader> {
 public:
   bool open(const std::string &path) override {
-    if (!reader_->CanReadFile(path.c_str())) return false;
+    if (!reader_->CanReadFile(path.c_str()))
+      return false;
     reader_->SetFileName(path.c_str());
     reader_->UpdateInformation();
     reader_->EnableAllBases();
@@ -19,4 +20,6 @@ public:
 
 } // namespace
 
-std::unique_ptr<tcv::Source> tcv::make_source(const SourceOptions &) { return std::make_unique<Cgns>(); }
+std::unique_ptr<tcv::Source> tcv::make_source(const SourceOptions &) {
+  return std::make_unique<Cgns>();
+}

@@ -10,7 +10,8 @@ class EnSight : public tcv::VtkSource<vtkGenericEnSightReader> {
 public:
   bool open(const std::string &path) override {
     const size_t slash = path.rfind('/'); // the reader looks for the other files in the folder it is given
-    if (slash != std::string::npos) reader_->SetFilePath(path.substr(0, slash + 1).c_str());
+    if (slash != std::string::npos)
+      reader_->SetFilePath(path.substr(0, slash + 1).c_str());
     reader_->SetCaseFileName(path.substr(slash == std::string::npos ? 0 : slash + 1).c_str());
     return true;
   }
@@ -18,4 +19,6 @@ public:
 
 } // namespace
 
-std::unique_ptr<tcv::Source> tcv::make_source(const SourceOptions &) { return std::make_unique<EnSight>(); }
+std::unique_ptr<tcv::Source> tcv::make_source(const SourceOptions &) {
+  return std::make_unique<EnSight>();
+}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exodus II. VTK reads elements with more nodes than it knows of their type as if they had fewer, which shifts all but the first: it is
-// told that they are a list of nodes, and what cell these make is found out here.
+// Exodus II. VTK reads elements with more nodes than it knows of their type as if they had fewer, which shifts all but
+// the first: it is told that they are a list of nodes, and what cell these make is found out here.
 #include <algorithm>
 #include <string>
 
@@ -18,15 +18,17 @@
 
 namespace {
 
-// Where in the list of an element each node of the cell is. Exodus has the edges between bottom and top before those of the top, and of a
-// hexahedron's middles first the one inside, then bottom, top, left, right, front, back; what VTK's pyramid has beyond its base's is not used.
+// Where in the list of an element each node of the cell is. Exodus has the edges between bottom and top before those of
+// the top, and of a hexahedron's middles first the one inside, then bottom, top, left, right, front, back; what VTK's
+// pyramid has beyond its base's is not used.
 const signed char in_order[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
-const signed char hexahedron[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15, 23, 24, 25, 26, 21, 22, 20};
+const signed char hexahedron[] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 16, 17,
+                                  18, 19, 12, 13, 14, 15, 23, 24, 25, 26, 21, 22, 20};
 const signed char wedge[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15, 16, 17};
 const signed char pyramid[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 0, 0, 0, 0, 0};
 
-// The first three letters of an element's type say what it is, its number of nodes which: at least so many in this table, and exactly so
-// many where edges are to have nodes. In other numbers the corners come first, too.
+// The first three letters of an element's type say what it is, its number of nodes which: at least so many in this
+// table, and exactly so many where edges are to have nodes. In other numbers the corners come first, too.
 const struct Kind {
   const char *letters;
   int listed, used; // nodes of the element, and of those in use
@@ -57,12 +59,14 @@ const struct Kind {
 };
 
 constexpr int MARK = 128; // types from here on stand for places in the table; no cell of VTK's has such a number
-static_assert(static_cast<int>(VTK_NUMBER_OF_CELL_TYPES) <= MARK && MARK + std::size(kinds) <= 256, "types and places must not meet");
+static_assert(static_cast<int>(VTK_NUMBER_OF_CELL_TYPES) <= MARK && MARK + std::size(kinds) <= 256,
+              "types and places must not meet");
 
 // The place of a block's kind; −1: no volume, or polyhedra, which VTK reads as they are.
 int find_kind(const std::string &letters, int nodes) {
   for (size_t i = 0; i < std::size(kinds); ++i) {
-    if (letters == kinds[i].letters && (kinds[i].listed == nodes || (kinds[i].listed == 0 && nodes >= kinds[i].used))) return static_cast<int>(i);
+    if (letters == kinds[i].letters && (kinds[i].listed == nodes || (kinds[i].listed == 0 && nodes >= kinds[i].used)))
+      return static_cast<int>(i);
   }
   return -1;
 }
@@ -73,7 +77,8 @@ class Reader : public vtkExodusIIReader {
 public:
   static Reader *New() { VTK_STANDARD_NEW_BODY(Reader); }
 
-  // Has VTK take all nodes of the elements, whatever they make. Returns what is to be said of those that will not be used.
+  // Has VTK take all nodes of the elements, whatever they make. Returns what is to be said of those that will not be
+  // used.
   std::vector<std::string> take_all_nodes() {
     struct Blocks : Metadata { // which only descendants see
       static std::map<int, std::vector<BlockInfoType>> Metadata::*all() { return &Blocks::BlockInfo; }
@@ -81,20 +86,23 @@ public:
     std::vector<std::string> remarks, told;
     for (auto &block : (this->Metadata->*Blocks::all())[ELEM_BLOCK]) {
       std::string type = block.TypeName;
-      std::transform(type.begin(), type.end(), type.begin(), [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+      std::transform(type.begin(), type.end(), type.begin(),
+                     [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
       const int nodes = block.BdsPerEntry[0], kind = find_kind(type.substr(0, 3), nodes);
       if (block.Size > 0 && nodes < block.PointsPerCell) { // VTK would read beyond the list
         vtkErrorMacro("block " << block.Id << ": its " << nodes << " nodes don't make an element of type " << type);
         block.Status = 0;
       }
-      if (kind < 0) continue;
+      if (kind < 0)
+        continue;
       block.CellType = MARK + kind;
       block.PointsPerCell = nodes;
       const std::string text = "elements of type " + type + ", of " + std::to_string(nodes) + " nodes each: ";
-      if (kinds[kind].used == nodes || std::find(told.begin(), told.end(), text) != told.end()) continue;
+      if (kinds[kind].used == nodes || std::find(told.begin(), told.end(), text) != told.end())
+        continue;
       told.push_back(text);
-      remarks.push_back(text + "the first " + std::to_string(kinds[kind].used) + ", at corners" + (kinds[kind].listed ? " and edges," : ",") +
-                        " are used, the others ignored");
+      remarks.push_back(text + "the first " + std::to_string(kinds[kind].used) + ", at corners" +
+                        (kinds[kind].listed ? " and edges," : ",") + " are used, the others ignored");
     }
     return remarks;
   }
@@ -104,7 +112,8 @@ public:
 void make_cells(vtkUnstructuredGrid *block) {
   vtkUnsignedCharArray *types = block->GetCellTypesArray();
   const vtkIdType cells = block->GetNumberOfCells();
-  if (cells == 0 || !types || types->GetValue(0) < MARK) return;
+  if (cells == 0 || !types || types->GetValue(0) < MARK)
+    return;
   const Kind &kind = kinds[types->GetValue(0) - MARK];
   vtkNew<vtkIdTypeArray> corners, ends;
   vtkNew<vtkUnsignedCharArray> new_types;
@@ -116,9 +125,11 @@ void make_cells(vtkUnstructuredGrid *block) {
     vtkIdType size;
     const vtkIdType *nodes;
     block->GetCells()->GetCellAtId(i, size, nodes);
-    for (int k = 0; k < kind.size; ++k) corners->SetValue(i * kind.size + k, nodes[kind.order[k]]);
+    for (int k = 0; k < kind.size; ++k)
+      corners->SetValue(i * kind.size + k, nodes[kind.order[k]]);
   }
-  for (vtkIdType i = 0; i <= cells; ++i) ends->SetValue(i, i * kind.size);
+  for (vtkIdType i = 0; i <= cells; ++i)
+    ends->SetValue(i, i * kind.size);
   vtkNew<vtkCellArray> list;
   list->SetData(ends, corners);
   block->SetCells(new_types, list);
@@ -129,7 +140,8 @@ public:
   explicit Exodus(bool displace) { reader_->SetApplyDisplacements(displace); }
 
   bool open(const std::string &path) override {
-    if (!reader_->CanReadFile(path.c_str())) return false;
+    if (!reader_->CanReadFile(path.c_str()))
+      return false;
     reader_->SetFileName(path.c_str());
     reader_->UpdateInformation();
     remarks = reader_->take_all_nodes();
@@ -142,14 +154,16 @@ public:
   std::vector<double> times() override {
     vtkInformation *about = reader_->GetOutputInformation(0);
     const auto key = vtkStreamingDemandDrivenPipeline::TIME_STEPS();
-    if (about && about->Has(key)) times_.assign(about->Get(key), about->Get(key) + about->Length(key));
+    if (about && about->Has(key))
+      times_.assign(about->Get(key), about->Get(key) + about->Length(key));
     return times_;
   }
   std::vector<tcv::ArrayName> arrays() override {
     std::vector<tcv::ArrayName> names;
     for (const int kind : {vtkExodusIIReader::NODAL, vtkExodusIIReader::ELEM_BLOCK}) {
       for (int i = 0; i < reader_->GetNumberOfObjectArrays(kind); ++i) {
-        names.push_back({kind == vtkExodusIIReader::NODAL ? TETCAST_POINT : TETCAST_CELL, reader_->GetObjectArrayName(kind, i)});
+        names.push_back(
+            {kind == vtkExodusIIReader::NODAL ? TETCAST_POINT : TETCAST_CELL, reader_->GetObjectArrayName(kind, i)});
       }
     }
     return names;
@@ -166,11 +180,14 @@ private:
 };
 
 vtkSmartPointer<vtkDataObject> Exodus::read(int64_t step) {
-  if (times_.empty()) reader_->Update();
-  else reader_->UpdateTimeStep(times_[static_cast<size_t>(step)]);
+  if (times_.empty())
+    reader_->Update();
+  else
+    reader_->UpdateTimeStep(times_[static_cast<size_t>(step)]);
   auto *output = vtkMultiBlockDataSet::SafeDownCast(reader_->GetOutputDataObject(0));
   auto *blocks = output && output->GetNumberOfBlocks() > 0 ? vtkMultiBlockDataSet::SafeDownCast(output->GetBlock(0)) : nullptr;
-  if (!blocks) return output;
+  if (!blocks)
+    return output;
   vtkUnstructuredGrid *first = nullptr;
   for (unsigned i = 0; i < blocks->GetNumberOfBlocks(); ++i) {
     auto *block = vtkUnstructuredGrid::SafeDownCast(blocks->GetBlock(i));
@@ -186,4 +203,6 @@ vtkSmartPointer<vtkDataObject> Exodus::read(int64_t step) {
 
 } // namespace
 
-std::unique_ptr<tcv::Source> tcv::make_source(const SourceOptions &options) { return std::make_unique<Exodus>(options.displace); }
+std::unique_ptr<tcv::Source> tcv::make_source(const SourceOptions &options) {
+  return std::make_unique<Exodus>(options.displace);
+}

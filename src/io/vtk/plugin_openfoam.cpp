@@ -18,4 +18,6 @@ public:
 
 } // namespace
 
-std::unique_ptr<tcv::Source> tcv::make_source(const SourceOptions &) { return std::make_unique<OpenFoam>(); }
+std::unique_ptr<tcv::Source> tcv::make_source(const SourceOptions &) {
+  return std::make_unique<OpenFoam>();
+}

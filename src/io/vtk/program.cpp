@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program tetcast-vtk-NAME: reads one file for the library, which started it, and tells it by descriptor 3 what is in there (wire.hpp).
-// What VTK's readers do to this process on damaged files ends nothing else.
+// The program tetcast-vtk-NAME: reads one file for the library, which started it, and tells it by descriptor 3 what is
+// in there (wire.hpp). What VTK's readers do to this process on damaged files ends nothing else.
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
@@ -37,13 +37,16 @@ const int channel = 3;
 
 // ── limits ──
 
-double seconds_of_cpu() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+double seconds_of_cpu() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
 
 // How many bytes this process has read; -1 where the system does not say.
 double bytes_read() {
   char text[32] = ""; // "rchar: " comes first
   const int file = open("/proc/self/io", O_RDONLY | O_CLOEXEC);
-  if (file < 0) return -1;
+  if (file < 0)
+    return -1;
   const ssize_t size = read(file, text, sizeof text - 1);
   close(file);
   return size > 7 && std::strncmp(text, "rchar: ", 7) == 0 ? std::strtod(text + 7, nullptr) : -1;
@@ -53,11 +56,12 @@ struct Spent {
   double seconds, bytes;
 } begun; // what there was when the attempt began
 
-// VTK's readers look for words that a damaged file does not have, without end: they compute and read nothing any more. What a whole file
-// takes is far less than this. Called by the timer.
+// VTK's readers look for words that a damaged file does not have, without end: they compute and read nothing any more.
+// What a whole file takes is far less than this. Called by the timer.
 void stop_if_endless(int) {
   const double bytes = bytes_read() - begun.bytes;
-  if (begun.bytes < 0 || seconds_of_cpu() - begun.seconds <= 3 + 4e-6 * bytes) return;
+  if (begun.bytes < 0 || seconds_of_cpu() - begun.seconds <= 3 + 4e-6 * bytes)
+    return;
   const char letter = tcv::WIRE_ENDLESS;
   _exit(write(channel, &letter, 1) == 1 ? 0 : 1);
 }
@@ -73,9 +77,11 @@ void watch(bool on) {
 void limit_memory() {
 #ifndef __SANITIZE_ADDRESS__
   rlimit limit;
-  if (getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  if (getrlimit(RLIMIT_DATA, &limit) != 0)
+    return;
   const auto memory = static_cast<rlim_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
-  if (limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur > memory) limit.rlim_cur = memory;
+  if (limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur > memory)
+    limit.rlim_cur = memory;
   setrlimit(RLIMIT_DATA, &limit);
 #endif
 }
@@ -111,8 +117,10 @@ Attempt try_reading(const tcv::PluginRequest &request, const std::vector<tcv::Ar
       const auto source = open_source(request, &attempt);
       if (!attempt.foreign) {
         const int64_t step = tcv::choose_step(request.path, request.step, request.time, source->times());
-        for (const tcv::ArrayName &array : source->arrays()) source->enable(array, false);
-        for (const tcv::ArrayName &array : arrays) source->enable(array, true);
+        for (const tcv::ArrayName &array : source->arrays())
+          source->enable(array, false);
+        for (const tcv::ArrayName &array : arrays)
+          source->enable(array, true);
         attempt.object = source->read(step);
         attempt.warnings = source->remarks;
         attempt.lost = source->lost;
@@ -126,34 +134,41 @@ Attempt try_reading(const tcv::PluginRequest &request, const std::vector<tcv::Ar
     } catch (const std::exception &exception) {
       attempt.error = exception.what();
     }
-    if (!capture.warning().empty()) attempt.warnings.push_back(capture.warning());
+    if (!capture.warning().empty())
+      attempt.warnings.push_back(capture.warning());
   }
   watch(false);
   int size = 0;
   std::fflush(stdout);
   ioctl(printed[0], FIONREAD, &size);
   char text[4096];
-  while (size > 0 && read(printed[0], text, sizeof text) > 0) ioctl(printed[0], FIONREAD, &size), attempt.good = false;
-  if (!attempt.good && attempt.error.empty()) attempt.error = "VTK's reader fails on it";
+  while (size > 0 && read(printed[0], text, sizeof text) > 0)
+    ioctl(printed[0], FIONREAD, &size), attempt.good = false;
+  if (!attempt.good && attempt.error.empty())
+    attempt.error = "VTK's reader fails on it";
   return attempt;
 }
 
 // ── telling ──
 
 // Children of a group that have no name go by their number, pieces of a block by the block's name.
-void each_leaf(const std::string &path, vtkDataObject *object, const std::function<void(const std::string &, vtkDataSet *)> &use) {
+void each_leaf(const std::string &path, vtkDataObject *object,
+               const std::function<void(const std::string &, vtkDataSet *)> &use) {
   if (auto *pieces = vtkMultiPieceDataSet::SafeDownCast(object)) {
-    for (unsigned i = 0; i < pieces->GetNumberOfPieces(); ++i) each_leaf(path, pieces->GetPieceAsDataObject(i), use);
+    for (unsigned i = 0; i < pieces->GetNumberOfPieces(); ++i)
+      each_leaf(path, pieces->GetPieceAsDataObject(i), use);
     return;
   }
   auto *blocks = vtkMultiBlockDataSet::SafeDownCast(object);
   if (!blocks) {
-    if (auto *dataset = vtkDataSet::SafeDownCast(object)) use(path, dataset);
+    if (auto *dataset = vtkDataSet::SafeDownCast(object))
+      use(path, dataset);
     return;
   }
   for (unsigned i = 0; i < blocks->GetNumberOfBlocks(); ++i) {
     vtkInformation *about = blocks->HasMetaData(i) ? blocks->GetMetaData(i) : nullptr;
-    const char *name = about && about->Has(vtkCompositeDataSet::NAME()) ? about->Get(vtkCompositeDataSet::NAME()) : nullptr;
+    const char *name =
+        about && about->Has(vtkCompositeDataSet::NAME()) ? about->Get(vtkCompositeDataSet::NAME()) : nullptr;
     const std::string own = name && *name ? name : std::to_string(i);
     each_leaf(path.empty() ? own : path + "/" + own, blocks->GetBlock(i), use);
   }
@@ -166,10 +181,12 @@ void tell(const tcv::PluginRequest &request, vtkDataObject *object, tcv::WireWri
       return wire->text(block);
     }
     tcv::Grid grid = vtkUnstructuredGrid::SafeDownCast(dataset);
-    if (!grid) grid = tcv::to_hexahedra(request.path + (block.empty() ? "" : ": block '" + block + "'"), dataset);
+    if (!grid)
+      grid = tcv::to_hexahedra(request.path + (block.empty() ? "" : ": block '" + block + "'"), dataset);
     wire->record(grid ? tcv::WIRE_GRID : tcv::WIRE_FLAT);
     wire->text(block);
-    if (grid) wire->grid(grid);
+    if (grid)
+      wire->grid(grid);
   });
 }
 
@@ -196,25 +213,31 @@ Attempt announced(const tcv::PluginRequest &request, const std::vector<tcv::Arra
   return try_reading(request, arrays);
 }
 
-// Moves to `bad` those of the arrays [begin, end) that can't be read, of which there is one at least. Halves tell soonest.
-void find_bad(const tcv::PluginRequest &request, const std::vector<tcv::ArrayName> &arrays, tcv::WireWriter *wire, const std::string &error,
-              std::vector<tcv::UnreadArray> *bad) {
-  if (arrays.size() == 1) return bad->push_back({arrays[0], error});
+// Moves to `bad` those of the arrays [begin, end) that can't be read, of which there is one at least. Halves tell
+// soonest.
+void find_bad(const tcv::PluginRequest &request, const std::vector<tcv::ArrayName> &arrays, tcv::WireWriter *wire,
+              const std::string &error, std::vector<tcv::UnreadArray> *bad) {
+  if (arrays.size() == 1)
+    return bad->push_back({arrays[0], error});
   const auto middle = arrays.begin() + static_cast<std::ptrdiff_t>(arrays.size() / 2);
   const std::vector<tcv::ArrayName> halves[2] = {{arrays.begin(), middle}, {middle, arrays.end()}};
   for (const auto &half : halves) {
     const Attempt attempt = announced(request, half, wire);
-    if (!attempt.good) find_bad(request, half, wire, attempt.error, bad);
+    if (!attempt.good)
+      find_bad(request, half, wire, attempt.error, bad);
   }
 }
 
 // Sorts the file's arrays: those to be read, and those that were not asked for, of which the library is told.
-std::vector<tcv::ArrayName> choose_arrays(const tcv::PluginRequest &request, const std::vector<tcv::ArrayName> &all, tcv::WireWriter *wire) {
+std::vector<tcv::ArrayName> choose_arrays(const tcv::PluginRequest &request, const std::vector<tcv::ArrayName> &all,
+                                          tcv::WireWriter *wire) {
   std::vector<tcv::ArrayName> wanted;
   for (const tcv::ArrayName &array : all) {
     bool without = false;
-    for (const tcv::ArrayName &one : request.without) without = without || one == array;
-    if (without) continue;
+    for (const tcv::ArrayName &one : request.without)
+      without = without || one == array;
+    if (without)
+      continue;
     if (tcv::may_name(request.only, array.name)) {
       wanted.push_back(array);
       continue;
@@ -231,16 +254,19 @@ Attempt read_what_can_be(const tcv::PluginRequest &request, std::vector<tcv::Arr
   Attempt attempt;
   if (!request.apart) {
     attempt = announced(request, arrays, wire);
-    if (attempt.good || arrays.empty()) return attempt;
+    if (attempt.good || arrays.empty())
+      return attempt;
   }
   const std::string error = attempt.error;
   attempt = announced(request, {}, wire);
-  if (!attempt.good) return attempt;
+  if (!attempt.good)
+    return attempt;
   std::vector<tcv::UnreadArray> bad;
   if (request.apart) {
     for (const tcv::ArrayName &array : arrays) {
       const Attempt one = announced(request, {array}, wire);
-      if (!one.good) bad.push_back({array, one.error});
+      if (!one.good)
+        bad.push_back({array, one.error});
     }
   } else {
     find_bad(request, arrays, wire, error, &bad);
@@ -265,24 +291,31 @@ void run(const tcv::PluginRequest &request, tcv::WireWriter *wire) {
   {
     const tcv::Capture capture;
     const auto source = open_source(request, &attempt);
-    if (!attempt.foreign) times = source->times();
-    if (!attempt.foreign) arrays = source->arrays();
-    if (capture.failed()) tcv::fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: %s", path, capture.error().c_str());
+    if (!attempt.foreign)
+      times = source->times();
+    if (!attempt.foreign)
+      arrays = source->arrays();
+    if (capture.failed())
+      tcv::fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: %s", path, capture.error().c_str());
   }
   watch(false);
-  if (attempt.foreign) return wire->record(tcv::WIRE_OTHER);
+  if (attempt.foreign)
+    return wire->record(tcv::WIRE_OTHER);
   const int64_t step = tcv::choose_step(request.path, request.step, request.time, times);
   wire->record(tcv::WIRE_TIMES);
   wire->number(static_cast<int64_t>(times.size()));
-  for (const double time : times) wire->real(time);
+  for (const double time : times)
+    wire->real(time);
   wire->number(step);
   attempt = read_what_can_be(request, choose_arrays(request, arrays, wire), wire);
-  if (!attempt.good) tcv::fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: %s", path, attempt.error.c_str());
+  if (!attempt.good)
+    tcv::fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: %s", path, attempt.error.c_str());
   for (const std::string &warning : attempt.warnings) {
     wire->record(tcv::WIRE_WARN);
     wire->text(warning);
   }
-  for (const tcv::UnreadArray &one : attempt.lost) tell_lost(one, wire);
+  for (const tcv::UnreadArray &one : attempt.lost)
+    tell_lost(one, wire);
   tell(request, attempt.object, wire);
   wire->record(tcv::WIRE_END);
 }
@@ -291,7 +324,8 @@ void run(const tcv::PluginRequest &request, tcv::WireWriter *wire) {
 bool arrange_files() {
   close_range(channel + 1, ~0U, 0);
   const int nothing = open("/dev/null", O_RDONLY);
-  if (nothing < 0 || dup2(nothing, STDIN_FILENO) < 0 || pipe2(printed, O_NONBLOCK | O_CLOEXEC) != 0) return false;
+  if (nothing < 0 || dup2(nothing, STDIN_FILENO) < 0 || pipe2(printed, O_NONBLOCK | O_CLOEXEC) != 0)
+    return false;
   return dup2(printed[1], STDOUT_FILENO) >= 0 && dup2(printed[1], STDERR_FILENO) >= 0;
 }
 
@@ -299,11 +333,13 @@ bool arrange_files() {
 
 int main(int argc, char **argv) {
   if (fcntl(channel, F_GETFD) < 0) {
-    std::fprintf(stderr, "%s is a part of libtetcast-vtk, which starts it to read a file\n", argc > 0 ? argv[0] : "this program");
+    std::fprintf(stderr, "%s is a part of libtetcast-vtk, which starts it to read a file\n",
+                 argc > 0 ? argv[0] : "this program");
     return 2;
   }
   fcntl(channel, F_SETFD, FD_CLOEXEC);
-  if (!arrange_files()) return 1;
+  if (!arrange_files())
+    return 1;
   limit_memory();
   vtkSMPTools::SetBackend("Sequential"); // no threads beside those of the host
   tcv::WireWriter wire(channel);

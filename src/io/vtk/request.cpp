@@ -14,12 +14,18 @@ namespace tcv {
 std::vector<std::string> arguments_of(const PluginRequest &request) {
   char time[64];
   std::snprintf(time, sizeof time, "t%a", request.time);
-  std::vector<std::string> arguments = {"f" + request.path, "i" + request.place, "s" + std::to_string(request.step), time};
-  if (request.block) arguments.push_back(std::string("b") + request.block);
-  if (request.only) arguments.push_back(std::string("o") + request.only);
-  if (!request.displace) arguments.push_back("u");
-  if (request.apart) arguments.push_back("a");
-  for (const ArrayName &array : request.without) arguments.push_back((array.association == TETCAST_POINT ? "p" : "c") + array.name);
+  std::vector<std::string> arguments = {"f" + request.path, "i" + request.place, "s" + std::to_string(request.step),
+                                        time};
+  if (request.block)
+    arguments.push_back(std::string("b") + request.block);
+  if (request.only)
+    arguments.push_back(std::string("o") + request.only);
+  if (!request.displace)
+    arguments.push_back("u");
+  if (request.apart)
+    arguments.push_back("a");
+  for (const ArrayName &array : request.without)
+    arguments.push_back((array.association == TETCAST_POINT ? "p" : "c") + array.name);
   return arguments;
 }
 
@@ -28,17 +34,38 @@ PluginRequest request_of(char **arguments) {
   for (char **at = arguments; *at; ++at) {
     const char *value = *at + 1;
     switch (**at) {
-    case 'f': request.path = value; break;
-    case 'i': request.place = value; break;
-    case 's': request.step = std::strtoll(value, nullptr, 10); break;
-    case 't': request.time = std::strtod(value, nullptr); break;
-    case 'b': request.block = value; break;
-    case 'o': request.only = value; break;
-    case 'u': request.displace = false; break;
-    case 'a': request.apart = true; break;
-    case 'p': request.without.push_back({TETCAST_POINT, value}); break;
-    case 'c': request.without.push_back({TETCAST_CELL, value}); break;
-    default: break;
+    case 'f':
+      request.path = value;
+      break;
+    case 'i':
+      request.place = value;
+      break;
+    case 's':
+      request.step = std::strtoll(value, nullptr, 10);
+      break;
+    case 't':
+      request.time = std::strtod(value, nullptr);
+      break;
+    case 'b':
+      request.block = value;
+      break;
+    case 'o':
+      request.only = value;
+      break;
+    case 'u':
+      request.displace = false;
+      break;
+    case 'a':
+      request.apart = true;
+      break;
+    case 'p':
+      request.without.push_back({TETCAST_POINT, value});
+      break;
+    case 'c':
+      request.without.push_back({TETCAST_CELL, value});
+      break;
+    default:
+      break;
     }
   }
   return request;
@@ -58,17 +85,19 @@ static std::string list_of(const std::vector<double> &times) {
 int64_t choose_step(const std::string &path, int64_t step, double time, const std::vector<double> &times) {
   const auto count = static_cast<int64_t>(times.size());
   if (!std::isnan(time)) {
-    if (count == 0) fail(TETCAST_ERROR_ARGUMENT, "%s: knows of no times: it is of one step", path.c_str());
+    if (count == 0)
+      fail(TETCAST_ERROR_ARGUMENT, "%s: knows of no times: it is of one step", path.c_str());
     int64_t nearest = 0;
     for (int64_t i = 1; i < count; ++i) {
-      if (std::fabs(times[static_cast<size_t>(i)] - time) < std::fabs(times[static_cast<size_t>(nearest)] - time)) nearest = i;
+      if (std::fabs(times[static_cast<size_t>(i)] - time) < std::fabs(times[static_cast<size_t>(nearest)] - time))
+        nearest = i;
     }
     // Decimal fractions are not exact, and some formats keep times in single precision.
     const double found = times[static_cast<size_t>(nearest)];
     const double scale = std::fmax(std::fabs(found), times.back() - times.front());
     if (!(std::fabs(found - time) <= 1e-6 * scale)) {
-      fail(TETCAST_ERROR_ARGUMENT, "%s: has no time %.9g; the nearest is %.9g, of step %lld; %s", path.c_str(), time, found,
-           static_cast<long long>(nearest), list_of(times).c_str());
+      fail(TETCAST_ERROR_ARGUMENT, "%s: has no time %.9g; the nearest is %.9g, of step %lld; %s", path.c_str(), time,
+           found, static_cast<long long>(nearest), list_of(times).c_str());
     }
     return nearest;
   }

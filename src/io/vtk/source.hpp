@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A format whose reader brings libraries of its own, and crashes on some damaged files: a program of its own reads it, tetcast-vtk-NAME,
-// which the library starts for each file (plugin.cpp) and which hands over what it has read (program.cpp).
+// A format whose reader brings libraries of its own, and crashes on some damaged files: a program of its own reads it,
+// tetcast-vtk-NAME, which the library starts for each file (plugin.cpp) and which hands over what it has read
+// (program.cpp).
 #ifndef TETCAST_VTK_SOURCE_HPP
 #define TETCAST_VTK_SOURCE_HPP
 
@@ -51,22 +52,29 @@ public:
     reader_->UpdateInformation();
     vtkInformation *about = reader_->GetOutputInformation(0);
     const auto key = vtkStreamingDemandDrivenPipeline::TIME_STEPS();
-    if (about && about->Has(key)) times_.assign(about->Get(key), about->Get(key) + about->Length(key));
+    if (about && about->Has(key))
+      times_.assign(about->Get(key), about->Get(key) + about->Length(key));
     return times_;
   }
   std::vector<ArrayName> arrays() override {
     std::vector<ArrayName> names;
-    for (int i = 0; i < reader_->GetNumberOfPointArrays(); ++i) names.push_back({TETCAST_POINT, reader_->GetPointArrayName(i)});
-    for (int i = 0; i < reader_->GetNumberOfCellArrays(); ++i) names.push_back({TETCAST_CELL, reader_->GetCellArrayName(i)});
+    for (int i = 0; i < reader_->GetNumberOfPointArrays(); ++i)
+      names.push_back({TETCAST_POINT, reader_->GetPointArrayName(i)});
+    for (int i = 0; i < reader_->GetNumberOfCellArrays(); ++i)
+      names.push_back({TETCAST_CELL, reader_->GetCellArrayName(i)});
     return names;
   }
   void enable(const ArrayName &array, bool on) override {
-    if (array.association == TETCAST_POINT) reader_->SetPointArrayStatus(array.name.c_str(), on);
-    else reader_->SetCellArrayStatus(array.name.c_str(), on);
+    if (array.association == TETCAST_POINT)
+      reader_->SetPointArrayStatus(array.name.c_str(), on);
+    else
+      reader_->SetCellArrayStatus(array.name.c_str(), on);
   }
   vtkSmartPointer<vtkDataObject> read(int64_t step) override {
-    if (times_.empty()) reader_->Update();
-    else reader_->UpdateTimeStep(times_[static_cast<size_t>(step)]);
+    if (times_.empty())
+      reader_->Update();
+    else
+      reader_->UpdateTimeStep(times_[static_cast<size_t>(step)]);
     return reader_->GetOutputDataObject(0);
   }
 

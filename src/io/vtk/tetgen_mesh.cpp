@@ -60,7 +60,8 @@ Arrays make_arrays(const Header &header, const std::string &name, const char *ma
 }
 
 // An array with something that is no number is noted, and left out in the end.
-void read_values(tcv::Scanner *scanner, int64_t i, TetcastAssociation association, const Arrays &arrays, std::vector<tcv::UnreadArray> *unread) {
+void read_values(tcv::Scanner *scanner, int64_t i, TetcastAssociation association, const Arrays &arrays,
+                 std::vector<tcv::UnreadArray> *unread) {
   for (const auto &array : arrays) {
     const std::string word = scanner->word();
     double value;
@@ -68,22 +69,30 @@ void read_values(tcv::Scanner *scanner, int64_t i, TetcastAssociation associatio
       array->SetValue(i, value);
       continue;
     }
-    tcv::note_unread(unread, {association, array->GetName()}, "line " + std::to_string(scanner->line()) + ": a value expected, not '" + word.substr(0, 40) + "'");
+    tcv::note_unread(unread, {association, array->GetName()},
+                     "line " + std::to_string(scanner->line()) + ": a value expected, not '" + word.substr(0, 40) +
+                         "'");
   }
 }
 
 // Those that are asked for and could be read.
-void add_arrays(const Arrays &arrays, TetcastAssociation association, const char *only, vtkDataSetAttributes *target, std::vector<tcv::UnreadArray> *unread) {
+void add_arrays(const Arrays &arrays, TetcastAssociation association, const char *only, vtkDataSetAttributes *target,
+                std::vector<tcv::UnreadArray> *unread) {
   for (const auto &array : arrays) {
     const tcv::ArrayName name = {association, array->GetName()};
-    const bool bad = std::any_of(unread->begin(), unread->end(), [&](const tcv::UnreadArray &one) { return one.array == name; });
-    if (bad) continue;
-    if (tcv::may_name(only, name.name)) target->AddArray(array);
-    else tcv::note_unread(unread, name, "");
+    const bool bad =
+        std::any_of(unread->begin(), unread->end(), [&](const tcv::UnreadArray &one) { return one.array == name; });
+    if (bad)
+      continue;
+    if (tcv::may_name(only, name.name))
+      target->AddArray(array);
+    else
+      tcv::note_unread(unread, name, "");
   }
 }
 
-int64_t read_nodes(const std::string &path, const char *only, vtkUnstructuredGrid *grid, std::vector<tcv::UnreadArray> *unread) {
+int64_t read_nodes(const std::string &path, const char *only, vtkUnstructuredGrid *grid,
+                   std::vector<tcv::UnreadArray> *unread) {
   const std::string text = tcv::file_contents(path.c_str());
   tcv::Scanner scanner(path.c_str(), text);
   const auto size = static_cast<int64_t>(text.size());
@@ -107,7 +116,8 @@ int64_t read_nodes(const std::string &path, const char *only, vtkUnstructuredGri
   return base;
 }
 
-void read_elements(const std::string &path, int64_t base, const char *only, vtkUnstructuredGrid *grid, std::vector<tcv::UnreadArray> *unread) {
+void read_elements(const std::string &path, int64_t base, const char *only, vtkUnstructuredGrid *grid,
+                   std::vector<tcv::UnreadArray> *unread) {
   const std::string text = tcv::file_contents(path.c_str());
   tcv::Scanner scanner(path.c_str(), text);
   const auto size = static_cast<int64_t>(text.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a reader program tells the library that started it, over a pipe, in the machine's own order of bytes: records of a letter and what
-// belongs to it. Both ends are of one build.
+// What a reader program tells the library that started it, over a pipe, in the machine's own order of bytes: records of
+// a letter and what belongs to it. Both ends are of one build.
 #ifndef TETCAST_VTK_WIRE_HPP
 #define TETCAST_VTK_WIRE_HPP
 
@@ -18,7 +18,8 @@ namespace tcv {
 
 // The letters.
 enum WireRecord : char {
-  WIRE_TRY = 't',    // text: what is tried next, which may end the program: an array's name, or nothing. Number: its association, −1 without
+  WIRE_TRY = 't',    // text: what is tried next, which may end the program: an array's name, or nothing. Number: its
+                     // association, −1 without
   WIRE_KNOWN = 'k',  // number, text: an array that there is and was not asked for
   WIRE_LOST = 'l',   // number, text, text: an array that can't be read, and why
   WIRE_TIMES = 's',  // number of times, these, the step
@@ -59,7 +60,8 @@ struct WireBroken {};
 
 class WireReader {
 public:
-  // `alive` tells whether the process is still there; asked where nothing comes for a while: another process may hold the pipe open.
+  // `alive` tells whether the process is still there; asked where nothing comes for a while: another process may hold
+  // the pipe open.
   WireReader(int file, bool (*alive)(int process), int process) : file_(file), alive_(alive), process_(process) {}
   WireRecord record();
   int64_t number();
@@ -78,8 +80,9 @@ private:
   int process_;
   std::vector<char> buffer_;
   size_t at_ = 0, end_ = 0;
-  std::vector<vtkSmartPointer<vtkDataArray>> arrays_;                // by their numbers
-  std::map<vtkDataArray *, vtkSmartPointer<vtkPoints>> points_; // of arrays of coordinates: grids that share them keep doing so
+  std::vector<vtkSmartPointer<vtkDataArray>> arrays_; // by their numbers
+  std::map<vtkDataArray *, vtkSmartPointer<vtkPoints>>
+      points_; // of arrays of coordinates: grids that share them keep doing so
 };
 
 } // namespace tcv

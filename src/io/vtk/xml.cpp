@@ -40,20 +40,25 @@ class Parser : public vtkXMLDataParser {
 public:
   static Parser *New() { VTK_STANDARD_NEW_BODY(Parser); }
 
-  // Whether there can be `count` values of so many bits in what `element` describes, as far as its header tells: before memory is taken.
+  // Whether there can be `count` values of so many bits in what `element` describes, as far as its header tells: before
+  // memory is taken.
   bool may_hold(vtkXMLDataElement *element, uint64_t count, uint64_t bits, uint64_t file_size) {
-    if (is_text(element)) return count <= file_size / 2 + 1; // a digit and a blank each
+    if (is_text(element))
+      return count <= file_size / 2 + 1; // a digit and a blank each
     return count <= UINT64_MAX / 64 && look(element, [&] {
-      const uint64_t bytes = (count * bits + 7) / 8;
-      if (this->Compressor) return blocks_hold(bytes, file_size);
-      uint64_t size;
-      return read_header(&size, 1) && size >= bytes && bytes <= file_size;
-    });
+             const uint64_t bytes = (count * bits + 7) / 8;
+             if (this->Compressor)
+               return blocks_hold(bytes, file_size);
+             uint64_t size;
+             return read_header(&size, 1) && size >= bytes && bytes <= file_size;
+           });
   }
 
   // Whether the values that `element` describes make at least `bytes` bytes.
   bool holds(vtkXMLDataElement *element, uint64_t bytes, uint64_t file_size) {
-    return is_text(element) || look(element, [&] { return this->Compressor ? blocks_hold(bytes, file_size) : plain_holds(bytes, file_size); });
+    return is_text(element) || look(element, [&] {
+             return this->Compressor ? blocks_hold(bytes, file_size) : plain_holds(bytes, file_size);
+           });
   }
 
   // The stream, where the values of an element of text begin.
@@ -74,7 +79,8 @@ private:
     if (element->GetAttribute("offset")) {
       vtkTypeInt64 offset = -1;
       element->GetScalarAttribute("offset", offset);
-      if (offset < 0 || offset > INT64_MAX / 2) return false;
+      if (offset < 0 || offset > INT64_MAX / 2)
+        return false;
       this->DataStream = this->AppendedDataStream;
       this->SeekG(this->AppendedDataPosition + offset);
     } else {
@@ -103,19 +109,23 @@ private:
     return true;
   }
 
-  // Number of blocks, size of each, size of a smaller last one (0: there is none), then the size of each as it is compressed: none is
-  // larger than the file, and what one of these bytes can make is limited, by 1032 for zlib, and in practice for the others.
+  // Number of blocks, size of each, size of a smaller last one (0: there is none), then the size of each as it is
+  // compressed: none is larger than the file, and what one of these bytes can make is limited, by 1032 for zlib, and in
+  // practice for the others.
   bool blocks_hold(uint64_t bytes, uint64_t file_size) {
     uint64_t header[3];
     if (!read_header(header, 3)) return false;
     const auto [count, size, last] = header;
     if (count == 0) return bytes == 0;
-    if (count > file_size / 12 + 1 || size == 0 || size > UINT64_MAX / 2 / count || last > size) return false;
-    if ((last ? (count - 1) * size + last : count * size) < bytes) return false;
+    if (count > file_size / 12 + 1 || size == 0 || size > UINT64_MAX / 2 / count || last > size)
+      return false;
+    if ((last ? (count - 1) * size + last : count * size) < bytes)
+      return false;
     uint64_t stored = 0;
     for (uint64_t i = 0; i < count; ++i) {
       uint64_t compressed;
-      if (!read_header(&compressed, 1) || compressed > file_size - stored) return false;
+      if (!read_header(&compressed, 1) || compressed > file_size - stored)
+        return false;
       stored += compressed;
     }
     return size <= file_size * 16384 && bytes / 16384 <= stored;
@@ -140,15 +150,19 @@ private:
 
 // What a value takes, of VTK's types; 0: is no number.
 uint64_t bits_of(int type) {
-  if (type == VTK_BIT) return 1;
-  const bool number = (type >= VTK_CHAR && type <= VTK_ID_TYPE) || (type >= VTK_SIGNED_CHAR && type <= VTK_UNSIGNED_LONG_LONG);
+  if (type == VTK_BIT)
+    return 1;
+  const bool number =
+      (type >= VTK_CHAR && type <= VTK_ID_TYPE) || (type >= VTK_SIGNED_CHAR && type <= VTK_UNSIGNED_LONG_LONG);
   return number ? 8 * static_cast<uint64_t>(vtkDataArray::GetDataTypeSize(type)) : 0;
 }
 
-bool is_named(vtkXMLDataElement *element, const char *name) { return element->GetName() && std::strcmp(element->GetName(), name) == 0; }
+bool is_named(vtkXMLDataElement *element, const char *name) {
+  return element->GetName() && std::strcmp(element->GetName(), name) == 0;
+}
 
-// What VTK leaves unchecked in readers of every kind. Arrays over points and cells that it would stumble upon are taken out of the XML before
-// it sees them, and those whose values can't be read are left out of what comes of it.
+// What VTK leaves unchecked in readers of every kind. Arrays over points and cells that it would stumble upon are taken
+// out of the XML before it sees them, and those whose values can't be read are left out of what comes of it.
 template <typename Base> class Guarded : public Base {
 public:
   // Of the description, and where notes go; both must outlive the reader.
@@ -159,8 +173,10 @@ public:
 
   // Takes out of what was read the arrays whose values could not be, and puts in those that needed another type.
   void mend(vtkDataSet *output) {
-    for (const tcv::ArrayName &lost : lost_) attributes_of(output, lost.association)->RemoveArray(lost.name.c_str());
-    for (const auto &[association, array] : wider_) attributes_of(output, association)->AddArray(array);
+    for (const tcv::ArrayName &lost : lost_)
+      attributes_of(output, lost.association)->RemoveArray(lost.name.c_str());
+    for (const auto &[association, array] : wider_)
+      attributes_of(output, association)->AddArray(array);
     lost_.clear();
     wider_.clear();
   }
@@ -173,7 +189,8 @@ protected:
 
   int ReadVTKFile(vtkXMLDataElement *element) override {
     element->RemoveAttribute("TimeValues");
-    if (!tidy(element, 0)) return 0;
+    if (!tidy(element, 0))
+      return 0;
     const int result = Base::ReadVTKFile(element);
     this->FieldDataElement = nullptr;
     return result;
@@ -188,19 +205,24 @@ protected:
         const TetcastAssociation association = of_points ? TETCAST_POINT : TETCAST_CELL;
         for (int k = group->GetNumberOfNestedElements(); k-- > 0;) {
           vtkXMLDataElement *array = group->GetNestedElement(k);
-          if (fits(array, of_points ? points : cells)) continue;
+          if (fits(array, of_points ? points : cells))
+            continue;
           lose({association, array->GetAttribute("Name")}, "it has less data than it should, or damaged ones");
           group->RemoveNestedElement(array);
         }
         continue;
       }
-      const int64_t tuples = is_named(group, "Points") ? points : 0; // of others it is not known, or cells are what counts
+      const int64_t tuples =
+          is_named(group, "Points") ? points : 0; // of others it is not known, or cells are what counts
       for (int k = 0; k < group->GetNumberOfNestedElements(); ++k) {
         vtkXMLDataElement *array = group->GetNestedElement(k);
         const char *name = array->GetAttribute("Name");
-        const bool per_cell = is_named(group, "Cells") && name && (std::strcmp(name, "offsets") == 0 || std::strcmp(name, "types") == 0);
-        if (fits(array, per_cell ? cells : tuples)) continue;
-        vtkErrorMacro("array '" << (name ? name : group->GetName()) << "' has less data than it should, or damaged ones");
+        const bool per_cell =
+            is_named(group, "Cells") && name && (std::strcmp(name, "offsets") == 0 || std::strcmp(name, "types") == 0);
+        if (fits(array, per_cell ? cells : tuples))
+          continue;
+        vtkErrorMacro("array '" << (name ? name : group->GetName())
+                                << "' has less data than it should, or damaged ones");
         return false;
       }
     }
@@ -224,7 +246,8 @@ protected:
       return 0;
     }
     auto *parser = static_cast<Parser *>(this->XMLParser);
-    if (Parser::is_text(element) && bits > 1) return read_text(element, index, numbers, start, count);
+    if (Parser::is_text(element) && bits > 1)
+      return read_text(element, index, numbers, start, count);
     const uint64_t bytes = (bits * static_cast<uint64_t>(start + count) + 7) / 8;
     if (!parser->holds(element, bytes, static_cast<uint64_t>(tcv::file_size(this->GetFileName())))) {
       vtkErrorMacro("array '" << (name ? name : "") << "' has less data than it should, or damaged ones");
@@ -234,38 +257,45 @@ protected:
   }
 
   void lose(const tcv::ArrayName &array, const std::string &reason) {
-    if (unread_) tcv::note_unread(unread_, array, reason);
+    if (unread_)
+      tcv::note_unread(unread_, array, reason);
   }
 
 private:
   static vtkDataSetAttributes *attributes_of(vtkDataSet *output, TetcastAssociation association) {
-    return association == TETCAST_POINT ? static_cast<vtkDataSetAttributes *>(output->GetPointData()) : output->GetCellData();
+    return association == TETCAST_POINT ? static_cast<vtkDataSetAttributes *>(output->GetPointData())
+                                        : output->GetCellData();
   }
 
   // Ghosts, and what curved cells need, are read at any rate.
   bool is_wanted(vtkXMLDataElement *group, const char *name) const {
-    if (tcv::is_ghost_array(name) || tcv::may_name(only_, name)) return true;
+    if (tcv::is_ghost_array(name) || tcv::may_name(only_, name))
+      return true;
     for (const char *role : {"RationalWeights", "HigherOrderDegrees"}) {
       const char *of_role = group->GetAttribute(role);
-      if (of_role && std::strcmp(of_role, name) == 0) return true;
+      if (of_role && std::strcmp(of_role, name) == 0)
+        return true;
     }
     return false;
   }
 
-  // Takes out what is not wanted, and VTK crashes on: notes on the file and on arrays, and arrays over points and cells that are none, or of
-  // the wrong kind. False if what the mesh needs is.
+  // Takes out what is not wanted, and VTK crashes on: notes on the file and on arrays, and arrays over points and cells
+  // that are none, or of the wrong kind. False if what the mesh needs is.
   bool tidy(vtkXMLDataElement *element, int depth) {
-    if (depth > 16) return true; // nothing of use is so deep
+    if (depth > 16)
+      return true; // nothing of use is so deep
     for (int i = element->GetNumberOfNestedElements(); i-- > 0;) {
       vtkXMLDataElement *nested = element->GetNestedElement(i);
-      const bool of_points = is_named(nested, "PointData"), array = is_named(nested, "DataArray") || is_named(nested, "Array");
+      const bool of_points = is_named(nested, "PointData"),
+                 array = is_named(nested, "DataArray") || is_named(nested, "Array");
       if (is_named(nested, "FieldData") || is_named(nested, "InformationKey")) {
         element->RemoveNestedElement(nested);
       } else if (of_points || is_named(nested, "CellData")) {
         tidy_arrays(nested, of_points ? TETCAST_POINT : TETCAST_CELL);
       } else if (!array) {
         nested->RemoveAttribute("TimeValues");
-        if (!tidy(nested, depth + 1)) return false;
+        if (!tidy(nested, depth + 1))
+          return false;
       } else {
         const std::string fault = fault_of(nested);
         if (!fault.empty()) {
@@ -284,16 +314,21 @@ private:
     std::vector<std::string> names;
     for (int i = 0, place = 0; i < group->GetNumberOfNestedElements(); ++place) {
       vtkXMLDataElement *array = group->GetNestedElement(i);
-      const char *given = array->GetAttribute("Name"), *step = array->GetAttribute("TimeStep"), *type = array->GetAttribute("type");
+      const char *given = array->GetAttribute("Name"), *step = array->GetAttribute("TimeStep"),
+                 *type = array->GetAttribute("type");
       const std::string name = given && *given ? given : "unnamed_" + std::to_string(place);
-      const bool text = type && std::strcmp(type, "String") == 0; // is none of the numbers that anything could be made of
-      const bool later = step && std::atoi(step) != 0;            // of the steps there may be the first is read
+      const bool text =
+          type && std::strcmp(type, "String") == 0;    // is none of the numbers that anything could be made of
+      const bool later = step && std::atoi(step) != 0; // of the steps there may be the first is read
       std::string fault;
       if (!text && !later) {
         fault = fault_of(array);
-        if (fault.empty() && std::find(names.begin(), names.end(), name) != names.end()) fault = "it is the second of that name";
-        if (!is_wanted(group, name.c_str())) lose({association, name}, "");
-        else if (!fault.empty()) lose({association, name}, fault);
+        if (fault.empty() && std::find(names.begin(), names.end(), name) != names.end())
+          fault = "it is the second of that name";
+        if (!is_wanted(group, name.c_str()))
+          lose({association, name}, "");
+        else if (!fault.empty())
+          lose({association, name}, fault);
       }
       if (text || later || !fault.empty() || !is_wanted(group, name.c_str())) {
         group->RemoveNestedElement(array);
@@ -311,11 +346,14 @@ private:
   static std::string fault_of(vtkXMLDataElement *array) {
     int type = 0;
     const tcv::Doubt doubt; // VTK complains of types that it doesn't know
-    if (!is_named(array, "DataArray") && !is_named(array, "Array")) return "it is no array";
+    if (!is_named(array, "DataArray") && !is_named(array, "Array"))
+      return "it is no array";
     const char *type_name = array->GetAttribute("type"), *components = array->GetAttribute("NumberOfComponents");
-    if (!type_name || !array->GetWordTypeAttribute("type", type) || bits_of(type) == 0) return std::string("its type is '") + (type_name ? type_name : "") + "'";
+    if (!type_name || !array->GetWordTypeAttribute("type", type) || bits_of(type) == 0)
+      return std::string("its type is '") + (type_name ? type_name : "") + "'";
     const double count = components ? tcv::number_of(components) : 1;
-    if (count >= 1 && count <= MOST_COMPONENTS && count == std::floor(count)) return "";
+    if (count >= 1 && count <= MOST_COMPONENTS && count == std::floor(count))
+      return "";
     return std::string("it claims ") + components + " components";
   }
 
@@ -324,19 +362,24 @@ private:
     array->GetWordTypeAttribute("type", type);
     array->GetScalarAttribute("NumberOfComponents", components);
     const auto count = static_cast<uint64_t>(tuples) * static_cast<uint64_t>(std::max(components, 1));
-    return static_cast<Parser *>(this->XMLParser)->may_hold(array, count, bits_of(type), static_cast<uint64_t>(tcv::file_size(this->GetFileName())));
+    return static_cast<Parser *>(this->XMLParser)
+        ->may_hold(array, count, bits_of(type), static_cast<uint64_t>(tcv::file_size(this->GetFileName())));
   }
 
   // Reads an array; one over points or cells that can't be read is noted, and nothing else comes of it.
-  template <typename Read> int attempt(vtkXMLDataElement *element, TetcastAssociation association, vtkAbstractArray *array, Read &&read) {
+  template <typename Read>
+  int attempt(vtkXMLDataElement *element, TetcastAssociation association, vtkAbstractArray *array, Read &&read) {
     const char *name = element->GetAttribute("Name");
-    const bool over_these = element->GetParent() && is_named(element->GetParent(), association == TETCAST_POINT ? "PointData" : "CellData");
-    if (!over_these || !name || tcv::is_ghost_array(name)) return read(); // which nothing is without
+    const bool over_these =
+        element->GetParent() && is_named(element->GetParent(), association == TETCAST_POINT ? "PointData" : "CellData");
+    if (!over_these || !name || tcv::is_ghost_array(name))
+      return read(); // which nothing is without
     overflowed_ = false;
     std::string reason;
     {
       const tcv::Doubt doubt;
-      if (!read() || doubt.failed()) reason = doubt.error().empty() ? "its data are damaged" : doubt.error();
+      if (!read() || doubt.failed())
+        reason = doubt.error().empty() ? "its data are damaged" : doubt.error();
     }
     if (!reason.empty()) {
       lost_.push_back({association, name});
@@ -354,7 +397,8 @@ private:
     wide->SetNumberOfComponents(array->GetNumberOfComponents());
     wide->CopyComponentNames(array);
     wide->SetNumberOfTuples(array->GetNumberOfTuples());
-    if (read_text(element, 0, wide, 0, wide->GetNumberOfValues())) wider_.emplace_back(association, wide);
+    if (read_text(element, 0, wide, 0, wide->GetNumberOfValues()))
+      wider_.emplace_back(association, wide);
   }
 
   // By row where a piece is a part of a structured grid: what comes first is read over.
@@ -371,18 +415,21 @@ private:
     std::vector<double> passed(static_cast<size_t>(std::min<vtkIdType>(start - text_at_, 4096)));
     while (text_at_ < start) {
       const auto part = std::min<int64_t>(start - text_at_, static_cast<int64_t>(passed.size()));
-      if (reader.read(passed.data(), part) < part) return too_few(element, array, reader, start);
+      if (reader.read(passed.data(), part) < part)
+        return too_few(element, array, reader, start);
       text_at_ += part;
     }
     int64_t have = 0;
     switch (array->GetDataType()) {
       vtkTemplateMacro(have = reader.read(static_cast<VTK_TT *>(array->GetVoidPointer(index)), count));
-    default: break;
+    default:
+      break;
     }
     text_at_ += have;
     text_place_ = this->Stream->tellg();
     overflowed_ = overflowed_ || (reader.overflowed() && start == 0 && count == array->GetNumberOfValues());
-    if (have < count) return too_few(element, array, reader, start + have);
+    if (have < count)
+      return too_few(element, array, reader, start + have);
     array->Modified();
     return 1;
   }
@@ -390,10 +437,15 @@ private:
   int too_few(vtkXMLDataElement *element, vtkDataArray *, const tcv::NumberReader &reader, int64_t have) {
     const char *name = element->GetAttribute("Name");
     text_element_ = nullptr;
-    const bool of_cells = name && (!std::strcmp(name, "connectivity") || !std::strcmp(name, "offsets") || !std::strcmp(name, "types"));
-    if (reader.word().empty() && of_cells) return 0; // VTK says so
-    if (reader.word().empty()) vtkErrorMacro("array '" << (name ? name : "") << "' has only " << have << " values: it is too short");
-    else vtkErrorMacro("array '" << (name ? name : "") << "': value " << have << " is '" << reader.word().substr(0, 40) << "', which is not a number of its type");
+    const bool of_cells =
+        name && (!std::strcmp(name, "connectivity") || !std::strcmp(name, "offsets") || !std::strcmp(name, "types"));
+    if (reader.word().empty() && of_cells)
+      return 0; // VTK says so
+    if (reader.word().empty())
+      vtkErrorMacro("array '" << (name ? name : "") << "' has only " << have << " values: it is too short");
+    else
+      vtkErrorMacro("array '" << (name ? name : "") << "': value " << have << " is '" << reader.word().substr(0, 40)
+                              << "', which is not a number of its type");
     return 0;
   }
 
@@ -404,7 +456,8 @@ private:
   std::vector<tcv::ArrayName> lost_;
   std::vector<std::pair<TetcastAssociation, vtkSmartPointer<vtkDataArray>>> wider_;
   bool overflowed_ = false;
-  const vtkXMLDataElement *text_element_ = nullptr; // whose text was read up to value text_at_, at text_place_ in the file
+  const vtkXMLDataElement *text_element_ =
+      nullptr; // whose text was read up to value text_at_, at text_place_ in the file
   vtkIdType text_at_ = 0;
   std::istream::pos_type text_place_ = 0;
 };
@@ -422,7 +475,8 @@ protected:
     const vtkIdType points = this->GetNumberOfPointsInPiece(this->Piece),
                     cells = this->GetNumberOfCellsInPiece(this->Piece);
     const int64_t limit = 256 * tcv::file_size(this->GetFileName()); // compressed, the best mesh stays far below
-    if (points >= 0 && cells >= 0 && points <= limit && cells <= limit) return this->claims_fit(element, points, cells);
+    if (points >= 0 && cells >= 0 && points <= limit && cells <= limit)
+      return this->claims_fit(element, points, cells);
     vtkErrorMacro("piece " << this->Piece << " claims " << points << " points and " << cells
                            << " cells, which the file can't hold");
     return 0;
@@ -436,10 +490,12 @@ public:
 
 protected:
   int ReadPiece(vtkXMLDataElement *element) override {
-    if (!Base::ReadPiece(element)) return 0;
+    if (!Base::ReadPiece(element))
+      return 0;
     const int *extent = this->PieceExtents + 6 * this->Piece;
     const double points = size(extent, 1), cells = size(extent, 0);
-    if (points < 1e15) return this->claims_fit(element, static_cast<int64_t>(points), static_cast<int64_t>(cells));
+    if (points < 1e15)
+      return this->claims_fit(element, static_cast<int64_t>(points), static_cast<int64_t>(cells));
     vtkErrorMacro("piece " << this->Piece << " claims " << points << " points, which the file can't hold");
     return 0;
   }
@@ -477,22 +533,26 @@ private:
     return value ? value : otherwise;
   }
   static bool alike(vtkXMLDataElement *a, vtkXMLDataElement *b) {
-    return std::strcmp(text(a, "type", ""), text(b, "type", "")) == 0 && std::strcmp(text(a, "NumberOfComponents", "1"), text(b, "NumberOfComponents", "1")) == 0;
+    return std::strcmp(text(a, "type", ""), text(b, "type", "")) == 0 &&
+           std::strcmp(text(a, "NumberOfComponents", "1"), text(b, "NumberOfComponents", "1")) == 0;
   }
   static vtkXMLDataElement *find(vtkXMLDataElement *group, const std::string &name) {
     for (int i = 0; group && i < group->GetNumberOfNestedElements(); ++i) {
-      if (name == text(group->GetNestedElement(i), "Name", "")) return group->GetNestedElement(i);
+      if (name == text(group->GetNestedElement(i), "Name", ""))
+        return group->GetNestedElement(i);
     }
     return nullptr;
   }
 
-  // VTK takes the first piece's arrays for those of all, one after the other: what is not the same in all pieces is left out.
+  // VTK takes the first piece's arrays for those of all, one after the other: what is not the same in all pieces is
+  // left out.
   void unify(vtkXMLDataElement **groups, TetcastAssociation association) {
     std::vector<std::string> names; // of any piece
     for (int i = 0; i < this->NumberOfPieces; ++i) {
       for (int k = 0; groups[i] && k < groups[i]->GetNumberOfNestedElements(); ++k) {
         const std::string name = text(groups[i]->GetNestedElement(k), "Name", "");
-        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+        if (std::find(names.begin(), names.end(), name) == names.end())
+          names.push_back(name);
       }
     }
     for (const std::string &name : names) {
@@ -502,12 +562,15 @@ private:
         vtkXMLDataElement *other = find(groups[i], name);
         good = other && alike(first, other);
       }
-      if (!good) this->lose({association, name}, "it is not in all pieces, or not of the same type");
+      if (!good)
+        this->lose({association, name}, "it is not in all pieces, or not of the same type");
       for (int i = 0; i < this->NumberOfPieces; ++i) {
         const vtkSmartPointer<vtkXMLDataElement> array = find(groups[i], name);
-        if (!array) continue;
+        if (!array)
+          continue;
         groups[i]->RemoveNestedElement(array);
-        if (good) groups[i]->AddNestedElement(array); // at the end: in the same order everywhere
+        if (good)
+          groups[i]->AddNestedElement(array); // at the end: in the same order everywhere
       }
     }
   }
@@ -597,7 +660,8 @@ private:
 };
 
 // What the reader makes of the file. `unread`: see set_request().
-template <typename Reader> auto read(const char *path, const char *only = nullptr, std::vector<tcv::UnreadArray> *unread = nullptr) {
+template <typename Reader>
+auto read(const char *path, const char *only = nullptr, std::vector<tcv::UnreadArray> *unread = nullptr) {
   vtkNew<Reader> reader;
   reader->SetFileName(path);
   reader->set_request(only, unread);
@@ -608,10 +672,12 @@ template <typename Reader> auto read(const char *path, const char *only = nullpt
 
 template <typename Reader> void read_structured(const tcv::Reading &reading, tcv::Contents *contents) {
   const char *path = reading.path.c_str();
-  const auto grid = tcv::captured(reading.context, path, [&] { return read<Structured<Reader>>(path, reading.desc->only, &contents->unread); });
+  const auto grid = tcv::captured(
+      reading.context, path, [&] { return read<Structured<Reader>>(path, reading.desc->only, &contents->unread); });
   const int64_t arrays = grid->GetPointData()->GetNumberOfArrays() + grid->GetCellData()->GetNumberOfArrays();
   if (arrays == 0 && grid->GetNumberOfPoints() > MOST_POINTS_ALONE) { // of which the file holds none but their number
-    tcv::fail(TETCAST_ERROR_DATA, "%s: claims %lld points, and has no data for them", path, static_cast<long long>(grid->GetNumberOfPoints()));
+    tcv::fail(TETCAST_ERROR_DATA, "%s: claims %lld points, and has no data for them", path,
+              static_cast<long long>(grid->GetNumberOfPoints()));
   }
   tcv::add_grid(reading, reading.block, grid, contents);
 }
@@ -643,6 +709,8 @@ void read_vti(const Reading &reading, Contents *contents) { read_structured<vtkX
 void read_vtr(const Reading &reading, Contents *contents) { read_structured<vtkXMLRectilinearGridReader>(reading, contents); }
 void read_vts(const Reading &reading, Contents *contents) { read_structured<vtkXMLStructuredGridReader>(reading, contents); }
 
-vtkSmartPointer<vtkPolyData> read_vtp(const char *path) { return read<Checked<vtkXMLPolyDataReader>>(path, ""); } // without arrays
+vtkSmartPointer<vtkPolyData> read_vtp(const char *path) {
+  return read<Checked<vtkXMLPolyDataReader>>(path, "");
+} // without arrays
 
 } // namespace tcv
