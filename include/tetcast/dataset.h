@@ -28,11 +28,14 @@ typedef struct TetcastDatasetDesc {
   double time;       /* the step at this time instead; NaN: none asked for */
   double merge_tolerance; /* negative: only points of different pieces are merged, where they coincide exactly. Else all points no
                              further than this apart, in the file's unit of length; 0: all that coincide exactly */
-  const char *only;       /* of the arrays none is read but those that this selector may name, see tetcast_dataset_field(), where the format
-                           * lets one choose (VTK XML, Exodus); NULL: all */
+  const char *only; /* of the arrays none is read but those that this selector may name, see tetcast_dataset_field(),
+                     * and no other that is damaged is told of; legacy .vtk files have to be read whole; NULL: all */
   bool cell_to_point;     /* fields of cell arrays are of points: at each the plain mean over the file's cells that use it, component by
                            * component; only volumetric cells count, and not those whose value is NaN or infinite */
   int subdivision;        /* what each edge of a curved cell is cut into, to TETCAST_MAX_SUBDIVISION; 0: as its nodes lie */
+  bool no_displacement;   /* points are where an Exodus file has them at first; else they are moved by its displacements
+                           * of the step: the first   vector of the points whose name begins with "dis", in any case of
+                           * letters */
 } TetcastDatasetDesc;
 
 /* All blocks, the first step, no tolerance, curved cells cut as their nodes lie. */
@@ -42,16 +45,28 @@ TETCAST_API TetcastDatasetDesc tetcast_dataset_desc_default(void);
  * Static storage; either may be NULL. False beyond the last. */
 TETCAST_API bool tetcast_dataset_format(int i, const char **name, const char **extensions);
 
-/* Reads a file in one of these formats; which one is told by content, then by extension. desc NULL: the default. TETCAST_ERROR_IO:
- * can't be opened. TETCAST_ERROR_DATA: truncated, damaged, no mesh, no cells, only surface cells, indices out of range.
- * TETCAST_ERROR_ARGUMENT: has no such block or step; the message lists those there are. The reader library's own complaints become part of the
- * message. Formats that VTK reads without care are tried in a child process first, which may crash.
+/* Reads a file in one of these formats; which one is told by content, then by extension. desc NULL: the default.
+ * TETCAST_ERROR_IO: can't be opened. TETCAST_ERROR_DATA: truncated, damaged, no mesh, no cells, only surface cells,
+ * indices out of range. TETCAST_ERROR_ARGUMENT: has no such block or step; the message lists those there are. The
+ * reader library's own complaints become part of the message.
  *
- * Structured grids become hexahedra. Of a file in pieces or blocks, ghost cells (vtkGhostType, vtkGhostLevels: copies of another piece's
- * cells) and blanked ones are left out, as are pieces without volume, and coincident points of different pieces become one, so that the
- * mesh is that of the whole. Where pieces disagree about a point's value, the piece first in the file wins that does not call the point
- * a duplicate; where some pieces lack an array, it is NaN, which is drawn transparent. Points with coordinates that
- * are NaN or infinite are left out, and so are the cells that use them. A warning says how often each of these was so. */
+ * An array that can't be read costs nothing else: it is left out with one warning, which names it and says why; only
+ * where none of the arrays can be read is the file an error. What a file says of sizes is held against what it holds
+ * before memory is taken: an error comes after no more than four times the file's size and 256 MB. Any thread may read
+ * at any time, whatever the others do.
+ *
+ * Exodus, VTKHDF, EnSight, CGNS and OpenFOAM files are read by programs of their own (tetcast-vtk-exodus …), which may
+ * crash without harm to the caller. They are started by posix_spawn() from the folder that the environment's
+ * TETCAST_LIBEXEC names; else from libexec/tetcast beside the folder of the library, wherever that was moved to.
+ * Without the program its formats are TETCAST_ERROR_UNSUPPORTED, and the message says where it was looked for. What the
+ * caller does with SIGCHLD, SIGPIPE and waitpid() makes no difference.
+ *
+ * Structured grids become hexahedra. Of a file in pieces or blocks, ghost cells (vtkGhostType, vtkGhostLevels: copies
+ * of another piece's cells) and blanked ones are left out, as are pieces without volume, and coincident points of
+ * different pieces become one, so that the mesh is that of the whole. Where pieces disagree about a point's value, the
+ * piece first in the file wins that does not call the point a duplicate; where some pieces lack an array, it is NaN,
+ * which is drawn transparent. Points with coordinates that are NaN or infinite are left out, and so are the cells that
+ * use them. A warning says how often each of these was so. */
 TETCAST_API TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, const TetcastDatasetDesc *desc,
                                                TetcastDataset **dataset);
 
@@ -65,6 +80,8 @@ TETCAST_API bool tetcast_dataset_cell_type(const TetcastDataset *dataset, int i,
 
 typedef struct TetcastDatasetArray {
   const char *name;               /* valid while the dataset lives */
+  const char *selector; /* what selects it, see tetcast_dataset_field(): its name, or "NAME:cell" where that is a point
+                           array's; as long */
   TetcastAssociation association; /* of points or cells */
   int components;                 /* ≥ 1 */
   const char *type;               /* as the file has it, e.g. "float64", "int32"; static storage */
@@ -101,20 +118,28 @@ TETCAST_API bool tetcast_dataset_time(const TetcastDataset *dataset, int64_t i, 
 
 /* The step that was read; 0 for files without. */
 TETCAST_API int64_t tetcast_dataset_step(const TetcastDataset *dataset);
+
 /* What cutting its cells came to, all 0 when all of them were tetrahedra already. Vertices that were added come after the file's points. */
 TETCAST_API TetcastCutInfo tetcast_dataset_cut(const TetcastDataset *dataset);
 
 /* The tetrahedra. Arrays may be the dataset's own: it must outlive the mesh, which the caller destroys. */
 TETCAST_API TetcastStatus tetcast_dataset_mesh(const TetcastDataset *dataset, TetcastMesh **mesh);
 
-/* The scalar that `selector` names: "NAME", "NAME:2" (component, from 0) or "NAME:mag" (Euclidean length); an array whose name
- * contains a colon is found by its whole name first; a point array before a cell array of the same name. Without component,
- * an array of several is taken by magnitude. NULL: the active scalars of the points, of the cells, else the first point array of one
- * component, the first cell array of one component, the first array; arrays that number points or cells (global ids) only when there is
- * nothing else. A file without arrays is TETCAST_ERROR_DATA. An unknown name or component is TETCAST_ERROR_ARGUMENT and the
+/* The scalar that `selector` names: "NAME", with ":point" or ":cell" behind it where both have an array of that name
+ * (else that of the points is meant), and with a component behind that: ":2" (from 0), ":x" (by the name that the file
+ * gives it; else x, y, z of two or three components, xx, yy, zz, xy, yz, xz of six and xx, xy, … zz of nine; in any
+ * case of letters) or ":mag" (Euclidean length), which is also what an array of several is taken by where none is
+ * named. An array whose name contains colons is found by its whole name first.
+ *
+ * NULL: the active scalars, of the points before the cells. Else an array that varies over what is drawn, of these one
+ * of points before one of cells, and of these a scalar before a vector, the first in the file's order. Constant ones,
+ * and then those that number points or cells (global ids), come only when there is nothing else.
+ *
+ * A file without arrays is TETCAST_ERROR_DATA. An unknown name or component is TETCAST_ERROR_ARGUMENT and the
  * message lists those there are. Cell arrays follow the tetrahedra the cells were cut into, or are
  * averaged if the description asked for that. The dataset must outlive the field,
- * which the caller destroys. `name` (may be NULL) receives the selector that selects the same again, valid while the dataset lives. */
+ * which the caller destroys. `name` (may be NULL) receives the selector that selects the same again, valid while the
+ * dataset lives. */
 TETCAST_API TetcastStatus tetcast_dataset_field(const TetcastDataset *dataset, const char *selector, TetcastField **field,
                                                 const char **name);
 

@@ -24,8 +24,9 @@ typedef struct TetcastMeshDesc {
 
 TETCAST_API TetcastMeshDesc tetcast_mesh_desc_default(void);
 
-/* Makes a mesh after checking that coordinates are finite and indices in range (TETCAST_ERROR_DATA names the first
- * that is not). n and m may be zero; both must be below 2^31 − 1 (TETCAST_ERROR_LIMIT). */
+/* Makes a mesh after checking that coordinates are finite, those of cells from −1e300 to 1e300, and indices in range
+ * (TETCAST_ERROR_DATA names the first that is not). n and m may be zero; both must be below 2^31 − 1
+ * (TETCAST_ERROR_LIMIT). */
 TETCAST_API TetcastStatus tetcast_mesh_create(TetcastContext *context, const TetcastMeshDesc *desc, TetcastMesh **mesh);
 
 /* Frees the mesh and sets *mesh to NULL. NULL and pointer to NULL do nothing. */

@@ -145,6 +145,18 @@ void cli_warning(const char *format, ...) {
   free(text);
 }
 
+void cli_note(const char *format, ...) {
+  va_list list;
+  va_start(list, format);
+  char *text = print_list(format, list);
+  va_end(list);
+  flockfile(stderr);
+  if (!messages.quiet && !messages.refused && !messages.failed)
+    show("note", NULL, text);
+  funlockfile(stderr);
+  free(text);
+}
+
 int cli_usage_error(const char *command, const char *format, ...) {
   va_list list;
   va_start(list, format);

@@ -17,10 +17,12 @@ int tetcast_cli_converge(int argc, char **argv);
 int tetcast_cli_info(int argc, char **argv);
 int tetcast_cli_mesh(int argc, char **argv);
 
-/* One line on stderr, "tetcast: error: …" or "tetcast: warning: …". Only the first error of a run is shown, and none
- * after an interruption; warnings are dropped after cli_set_quiet(true). */
+/* One line on stderr, "tetcast: error: …", "tetcast: warning: …" or "tetcast: note: …", which says what was chosen
+ * where nothing was said. Only the first error of a run is shown, and none after an interruption; warnings and notes
+ * are dropped after cli_set_quiet(true). */
 void cli_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void cli_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));
+void cli_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void cli_set_quiet(bool quiet);
 
 /* Warnings are errors from here on. A step that may have come upon one ends with `return cli_verdict(CLI_DONE)`: CLI_FAILED if it has, else

@@ -7,11 +7,18 @@
 #include "adapter.h"
 #include "cli.h"
 
+/* Whether the selector is of the array as a whole: its name, perhaps with the word for where it is. */
+static bool names_all_of(const char *selector, const TetcastDatasetArray *array) {
+  const size_t length = strlen(array->name);
+  const char *where = array->association == TETCAST_CELL ? ":cell" : ":point";
+  return !strncmp(selector, array->name, length) && (!selector[length] || !strcmp(selector + length, where));
+}
+
 /* How many components the array has that is named like this as a whole; 1 for anything else, e.g. one component of it. */
 static int components_of(const TetcastDataset *dataset, const char *selector) {
   TetcastDatasetArray array;
   for (int i = 0; cli_vtk()->dataset_array(dataset, i, &array); i++)
-    if (!strcmp(array.name, selector))
+    if (names_all_of(selector, &array))
       return array.components;
   return 1;
 }

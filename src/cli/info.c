@@ -26,6 +26,7 @@ static const char help_text[] =
     "                           coincide\n"
     "      --cell-to-point      ranges of cell arrays are those of their averages at the points\n"
     "      --strict             fails with the reader's first warning, or with what of the list is a defect\n"
+    "      --no-displacement    an Exodus file's points as they are at first, not moved by its displacements\n"
     "      --subdivide N        cuts each edge of a curved cell into N; default: as its nodes lie\n"
     "      --formats            lists the formats that can be read\n"
     "  -h, --help               this text\n"
@@ -51,7 +52,7 @@ static TetcastStatus get_range(const Info *info, const char *selector, InfoRange
 }
 
 static TetcastStatus get_ranges(const Info *info, InfoArray *array) {
-  const char *name = array->about.name;
+  const char *name = array->about.selector;
   if (array->about.components == 1) {
     array->components = 1;
     return get_range(info, name, &array->component[0]);
@@ -76,11 +77,7 @@ static TetcastStatus get_arrays(Info *info) {
   for (int i = 0; i < info->array_count; i++) {
     InfoArray *array = &info->arrays[i];
     info->vtk->dataset_array(info->dataset, i, &array->about);
-    array->reachable = true;
-    for (int j = 0; j < i; j++)
-      if (!strcmp(info->arrays[j].about.name, array->about.name))
-        array->reachable = false;
-    const TetcastStatus status = array->reachable ? get_ranges(info, array) : TETCAST_OK;
+    const TetcastStatus status = get_ranges(info, array);
     if (status != TETCAST_OK)
       return status;
   }
@@ -114,17 +111,15 @@ static void print_range(const InfoRange *range, const char *label) {
 static void print_arrays(const Info *info) {
   int width = 4;
   for (int i = 0; i < info->array_count; i++) {
-    const int length = (int)strlen(info->arrays[i].about.name);
+    const int length = (int)strlen(info->arrays[i].about.selector);
     width = length > width && length <= 40 ? length : width;
   }
   puts(info->array_count ? "arrays" : "arrays        none");
   for (int i = 0; i < info->array_count; i++) {
     const InfoArray *array = &info->arrays[i];
     const int indent = printf("  %-5s  %-*s  %-7s  ", array->about.association == TETCAST_CELL ? "cell" : "point",
-                              width, array->about.name, array->about.type);
-    if (!array->reachable) {
-      puts("hidden by another array of the same name");
-    } else if (array->about.components == 1) {
+                              width, array->about.selector, array->about.type);
+    if (array->about.components == 1) {
       print_range(&array->component[0], "");
     } else {
       for (int c = 0; c < array->components; c++) {
@@ -185,8 +180,7 @@ static void report_defects(const Info *info) {
   int64_t nonfinite = 0;
   for (int i = 0; i < info->array_count; i++) {
     const InfoArray *array = &info->arrays[i];
-    if (array->reachable)
-      nonfinite += array->about.components == 1 ? array->component[0].nonfinite : array->magnitude.nonfinite;
+    nonfinite += array->about.components == 1 ? array->component[0].nonfinite : array->magnitude.nonfinite;
   }
   const struct {
     const char *name;
@@ -279,7 +273,7 @@ static int print_formats(void) {
 typedef struct Request {
   const char *path, *block, *time;
   double merge_tolerance;
-  bool json, formats, strict, cell_to_point;
+  bool json, formats, strict, cell_to_point, no_displacement;
   int subdivide;
 } Request;
 
@@ -291,6 +285,7 @@ static int parse(int argc, char **argv, Request *request) {
                                         {"merge-tolerance", required_argument, NULL, 'm'},
                                         {"strict", no_argument, NULL, 'S'},
                                         {"cell-to-point", no_argument, NULL, 'c'},
+                                        {"no-displacement", no_argument, NULL, 'd'},
                                         {"subdivide", required_argument, NULL, 's'},
                                         {"help", no_argument, NULL, 'h'},
                                         {NULL, 0, NULL, 0}};
@@ -320,6 +315,9 @@ static int parse(int argc, char **argv, Request *request) {
       break;
     case 'c':
       request->cell_to_point = true;
+      break;
+    case 'd':
+      request->no_displacement = true;
       break;
     case 'b':
       if (!*optarg)
@@ -365,6 +363,7 @@ int tetcast_cli_info(int argc, char **argv) {
     info.desc = info.vtk->dataset_desc_default();
     render_option_dataset(request.block, request.time, request.merge_tolerance, &info.desc);
     info.desc.cell_to_point = request.cell_to_point;
+    info.desc.no_displacement = request.no_displacement;
     info.desc.subdivision = request.subdivide;
     const TetcastStatus status = get_info(&info, context);
     if (status == TETCAST_OK && request.strict)

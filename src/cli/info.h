@@ -18,7 +18,6 @@ typedef struct InfoRange {
 
 typedef struct InfoArray {
   TetcastDatasetArray about;
-  bool reachable; /* false: another array of the same name hides it, and no more is known */
   int components; /* with a range each */
   InfoRange component[INFO_COMPONENTS];
   InfoRange magnitude; /* of arrays of several components */

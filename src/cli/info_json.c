@@ -17,12 +17,11 @@ static json_t *range_object(const InfoRange *range) {
 static json_t *array_object(const InfoArray *array) {
   json_t *object = json_object();
   json_object_set_new(object, "name", cli_json_text(array->about.name));
+  json_object_set_new(object, "selector", cli_json_text(array->about.selector));
   json_object_set_new(object, "association", json_string(array->about.association == TETCAST_CELL ? "cell" : "point"));
   json_object_set_new(object, "type", json_string(array->about.type));
   json_object_set_new(object, "components", json_integer(array->about.components));
   json_object_set_new(object, "active", json_boolean(array->about.active));
-  if (!array->reachable)
-    return object;
   const InfoRange *range = array->about.components == 1 ? &array->component[0] : &array->magnitude;
   json_object_update_new(object, range_object(range));
   if (array->about.components > 1 && array->components > 0) {

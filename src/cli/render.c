@@ -82,22 +82,11 @@ void render_await_image(Run *run) {
   run->image_pending = false;
 }
 
-/* Some files are tried in a child process first, which would keep for ever the locks of a thread that it doesn't have. */
-static Run *running;
-
-static void before_fork(void) {
-  if (running)
-    render_await_image(running);
-}
-
 /* Loading the image library takes about as long as reading a large mesh, and both are work for one processor: they are
  * done at the same time. */
 static int begin_image(Run *run) {
   if (!cli_vtk()) /* before the thread begins: only one library is loaded at a time */
     return CLI_FAILED;
-  running = run;
-  if (pthread_atfork(before_fork, NULL, NULL) != 0)
-    return check_image(run);
   sem_init(&run->image_begun, 0, 0);
   if (pthread_create(&run->image_thread, NULL, check_image_aside, run) != 0)
     return check_image(run);
@@ -228,7 +217,6 @@ int tetcast_cli_render(int argc, char **argv) {
     code = perform(&run);
   }
   render_await_image(&run);
-  running = NULL;
   tetcast_frame_destroy(&run.frame);
   stage_release(&run.stage);
   free(run.stats.render_seconds);

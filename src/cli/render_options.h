@@ -21,6 +21,7 @@ typedef enum OptionId {
   OPTION_MERGE_TOLERANCE,
   OPTION_CELL_TO_POINT,
   OPTION_SUBDIVIDE,
+  OPTION_NO_DISPLACEMENT,
   OPTION_TRANSFER,
   OPTION_PRESET,
   OPTION_RANGE,
@@ -70,7 +71,7 @@ typedef struct RenderOptions {
   RangeKind range_kind;   /* RANGE_FIXED: options->range */
   double subdivide;
   int opacity_model, traversal, isa, pixel_type; /* values of the library's enumerations */
-  int cell_to_point, quiet, strict, resume, refine, no_plots, groups;
+  int cell_to_point, no_displacement, quiet, strict, resume, refine, no_plots, groups;
   uint64_t given;  /* bit 1 << OptionId: has a value from command line or scene file */
   uint64_t source; /* the same for the source being read alone */
 } RenderOptions;

@@ -142,6 +142,8 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
     json_object_set_new(scene, "merge_tolerance", json_real(options->merge_tolerance));
   if (options->cell_to_point)
     json_object_set_new(scene, "cell_to_point", json_true());
+  if (options->no_displacement)
+    json_object_set_new(scene, "no_displacement", json_true());
   if (options->subdivide > 0)
     json_object_set_new(scene, "subdivide", json_integer((json_int_t)options->subdivide));
   free(input);

@@ -24,6 +24,40 @@ int stage_begin(Stage *stage, const RenderOptions *options) {
   return cli_verdict(CLI_DONE);
 }
 
+/* Which array is drawn, where that was not said and there are others. */
+static void tell_choice(const Stage *stage) {
+  TetcastDatasetArray array, chosen = {.association = TETCAST_POINT};
+  char *others = NULL;
+  int count = 0;
+  for (int i = 0; cli_vtk()->dataset_array(stage->dataset, i, &array); i++) {
+    if (!strcmp(array.selector, stage->array)) {
+      chosen = array;
+      continue;
+    }
+    if (++count > 8) /* the line is to be read */
+      continue;
+    char *longer = cli_print("%s%s%s", others ? others : "", others ? ", " : "", count == 8 ? "…" : array.selector);
+    free(others);
+    others = longer;
+  }
+  if (others)
+    cli_note("draws %s array %s; --array chooses another: %s", chosen.association == TETCAST_CELL ? "cell" : "point",
+             stage->array, others);
+  else
+    cli_note("draws %s array %s, the only one", chosen.association == TETCAST_CELL ? "cell" : "point", stage->array);
+  free(others);
+}
+
+/* The one array that is asked for; NULL: the default, or several. That of the step before is not chosen anew. */
+static const char *only_array(const Stage *stage, const RenderOptions *options) {
+  const char *extinction = options->extinction, *emission = options->emission;
+  if (!render_options_direct(options))
+    return stage->array ? stage->array : options->array;
+  if (extinction && emission)
+    return strcmp(extinction, emission) == 0 ? extinction : NULL;
+  return extinction ? extinction : emission;
+}
+
 /* The dataset and its field or coefficients; `step` NULL: the one that the options name. */
 static int read_field(Stage *stage, const RenderOptions *options, const int64_t *step) {
   const double start = cli_seconds();
@@ -33,7 +67,8 @@ static int read_field(Stage *stage, const RenderOptions *options, const int64_t 
   render_option_dataset(options->block, options->time, options->merge_tolerance, &desc);
   desc.subdivision = (int)options->subdivide;
   desc.cell_to_point = options->cell_to_point;
-  desc.only = stage->array; /* of the step before */
+  desc.no_displacement = options->no_displacement;
+  desc.only = only_array(stage, options);
   if (step) {
     desc.step = *step;
     desc.time = NAN;
@@ -46,8 +81,11 @@ static int read_field(Stage *stage, const RenderOptions *options, const int64_t 
       return CLI_FAILED;
   } else if (status == TETCAST_OK) {
     status = vtk->dataset_field(stage->dataset, stage->array ? stage->array : options->array, &stage->field, &array);
-    if (status == TETCAST_OK && !stage->array)
+    if (status == TETCAST_OK && !stage->array) {
       stage->array = cli_duplicate(array);
+      if (!options->array)
+        tell_choice(stage);
+    }
   }
   stage->read_seconds = cli_seconds() - start;
   return status == TETCAST_OK ? CLI_DONE : cli_failed(status);

@@ -58,6 +58,7 @@ typedef struct Cell {
   int64_t index, nodes; /* nodes listed */
   unsigned type;
   bool curved, oversized, open;
+  bool collapsed; /* a curved one with a corner twice */
   TcShape shape;
   TcLattice lattice;
 } Cell;
@@ -220,7 +221,15 @@ static Fault load_curved(Cutter *cutter, int64_t i, int64_t begin, Scratch *scra
   if (!tc_lattice_make(cell->type, cell->nodes, given ? order : NULL, desc->subdivision, &cell->lattice)) return BAD_NODES;
   const int64_t size = tc_lattice_size(&cell->lattice);
   if (!reserve(cutter, scratch, size > cell->lattice.nodes ? size : cell->lattice.nodes)) return NO_MEMORY;
-  return read_nodes(cutter, i, begin, cell->lattice.nodes, scratch->node);
+  const Fault fault = read_nodes(cutter, i, begin, cell->lattice.nodes, scratch->node);
+  cell->collapsed = tc_has_twice(scratch->node, tc_shape(cell->lattice.shape)->corners);
+  return fault;
+}
+
+/* The node of a curved cell at a point of its lattice; −1 if there is none. */
+static int node_at(const Cell *cell, const int at[3], const uint32_t *ids) {
+  const int node = cell->collapsed ? tc_lattice_shared_node(&cell->lattice, at, ids, cell->index) : -1;
+  return node >= 0 ? node : tc_lattice_node(&cell->lattice, at);
 }
 
 /* A voxel's nodes have x fastest, where a hexahedron's go round. */
@@ -332,7 +341,8 @@ static TetcastStatus add_lattices(Cutter *cutter) {
     if (fault) return report(cutter, i);
     int at[3] = {-1, 0, 0};
     while (tc_lattice_next(&cell.lattice, at)) {
-      if (tc_lattice_node(&cell.lattice, at) >= 0) continue;
+      if (node_at(&cell, at, scratch->node) >= 0)
+        continue;
       const TcPointKey key = tc_lattice_key(&cell.lattice, at, scratch->node, i);
       if (tc_points_find(points, &key) >= 0) continue;
       if (cutter->vertex_count + points->count >= TC_MAX_COUNT) {
@@ -437,7 +447,7 @@ static void cut_curved(Cutter *cutter, const Cell *cell, Scratch *scratch, Block
   const TcLattice *lattice = &cell->lattice;
   int at[3] = {-1, 0, 0};
   while (tc_lattice_next(lattice, at)) {
-    const int node = tc_lattice_node(lattice, at);
+    const int node = node_at(cell, at, scratch->node);
     uint32_t *point = &scratch->point[tc_lattice_index(lattice, at)];
     if (node >= 0) {
       *point = scratch->node[node];

@@ -127,6 +127,7 @@ typedef struct TcLattice {
   int segments[3]; /* that edges are cut into */
   int nodes;       /* a lattice of `order` with more points lacks those beyond */
   bool bezier;
+  bool centred; /* of second order, with nodes in the middles of its triangles and of the cell as well */
 } TcLattice;
 
 enum { TC_MAX_ORDER = 10 };
@@ -143,6 +144,9 @@ bool tc_lattice_next(const TcLattice *lattice, int at[3]);
 int64_t tc_lattice_index(const TcLattice *lattice, const int at[3]);
 /* The node at a point; −1 if there is none. */
 int tc_lattice_node(const TcLattice *lattice, const int at[3]);
+/* The same of a cell with a corner twice, some points of which are one: the first node of those that are one with this.
+ */
+int tc_lattice_shared_node(const TcLattice *lattice, const int at[3], const uint32_t *ids, int64_t cell);
 /* The shape functions of all nodes at a point. */
 void tc_lattice_weights(const TcLattice *lattice, const int at[3], double *weight);
 /* What a point is known by; `ids` are the cell's nodes, `cell` its number. */

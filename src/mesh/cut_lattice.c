@@ -49,7 +49,20 @@ static int64_t whole(TcShapeName shape, const int order[3]) {
   return (n + 1) * (order[1] + 1) * (order[2] + 1);
 }
 
+/* VTK has Lagrange cells of 15 and 21 nodes, whose order is the second whatever is given. */
+static bool is_centred(const TcLattice *lattice, int64_t nodes) {
+  if (lattice->bezier)
+    return false;
+  return (lattice->shape == TC_TETRAHEDRON && nodes == 15) || (lattice->shape == TC_WEDGE && nodes == 21);
+}
+
 static bool find_order(TcLattice *lattice, int64_t nodes, const double given[3]) {
+  lattice->centred = is_centred(lattice, nodes);
+  if (lattice->centred) {
+    for (int k = 0; k < 3; ++k)
+      lattice->order[k] = 2;
+    return true;
+  }
   if (given) {
     for (int k = 0; k < 3; ++k) {
       if (!(given[k] >= 1 && given[k] <= TC_MAX_ORDER)) return false;
@@ -208,6 +221,8 @@ static int own_node(const TcLattice *lattice, const int at[3]) {
                    : lattice->shape == TC_WEDGE    ? wedge_node(n[0], n[2], at)
                    : lattice->shape == TC_PYRAMID  ? pyramid_node(at)
                                                    : tetrahedron_node(n[0], at);
+  if (lattice->centred && node >= 15)
+    return node + 2; /* the middles of the wedge's triangles come before those of its quadrilaterals */
   return node < lattice->nodes ? node : -1;
 }
 
@@ -222,6 +237,28 @@ int tc_lattice_node(const TcLattice *lattice, const int at[3]) {
   const bool apex = lattice->shape == TC_PYRAMID && own[2] == lattice->order[2];
   if (lattice->bezier && ends < 3 && !apex) return -1; /* its nodes are not on it, but for corners */
   return own_node(lattice, own);
+}
+
+static bool same_key(const TcPointKey *a, const TcPointKey *b) {
+  for (int k = 0; k < 4; ++k) {
+    if (a->vertex[k] != b->vertex[k] || a->share[k] != b->share[k])
+      return false;
+  }
+  return true;
+}
+
+int tc_lattice_shared_node(const TcLattice *lattice, const int at[3], const uint32_t *ids, int64_t cell) {
+  const TcPointKey key = tc_lattice_key(lattice, at, ids, cell);
+  int other[3] = {-1, 0, 0};
+  while (tc_lattice_next(lattice, other)) {
+    const int node = tc_lattice_node(lattice, other);
+    if (node < 0)
+      continue;
+    const TcPointKey of_other = tc_lattice_key(lattice, other, ids, cell);
+    if (same_key(&key, &of_other))
+      return node;
+  }
+  return -1;
 }
 
 /* ── shape functions ── */
@@ -317,6 +354,51 @@ static void pyramid_weights(const TcLattice *lattice, const int at[3], double *w
   weight[13] = bubble;
 }
 
+/* What a function that is 1 at node `middle`, and at no other, takes from those that surround it in a triangle of
+ * second order, which have −1/9 (corners) and 4/9 (edges) of the value there by themselves. */
+static void add_middle(double w, int middle, const int corner[3], const int edge[3], double *weight) {
+  weight[middle] += w;
+  for (int k = 0; k < 3; ++k) {
+    weight[corner[k]] += w / 9;
+    weight[edge[k]] -= 4 * w / 9;
+  }
+}
+
+/* Adds the cubic functions of the triangles' middles, and that of the cell's: products of the shares of the corners.
+ * What the others make there is taken off, the triangles' before the cell's. */
+static void add_tetrahedron_middles(const double b[4], double *weight) {
+  static const int corner[4][3] = {{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, {0, 2, 3}},
+                   edge[4][3] = {{4, 5, 6}, {4, 8, 7}, {5, 9, 8}, {6, 9, 7}};
+  const double inside = 256 * b[0] * b[1] * b[2] * b[3];
+  for (int f = 0; f < 4; ++f) {
+    const double w = 27 * b[corner[f][0]] * b[corner[f][1]] * b[corner[f][2]];
+    add_middle(w - inside * 27 / 64, 10 + f, corner[f], edge[f], weight); /* which is 27/64 in the cell's middle */
+  }
+  for (int k = 0; k < 4; ++k)
+    weight[k] += inside / 8; /* where these have −1/8, and edges 1/4 */
+  for (int k = 4; k < 10; ++k)
+    weight[k] -= inside / 4;
+  weight[14] += inside;
+}
+
+static void add_wedge_middles(const double b[3], double z, double *weight) {
+  static const int corner[3][3] = {{0, 1, 2}, {3, 4, 5}, {12, 13, 14}},
+                   edge[3][3] = {{6, 7, 8}, {9, 10, 11}, {17, 18, 19}};
+  static const int middle[3] = {15, 16, 20};
+  const double along[3] = {(1 - z) * (1 - 2 * z), z * (2 * z - 1), 4 * z * (1 - z)};
+  for (int k = 0; k < 3; ++k)
+    add_middle(27 * b[0] * b[1] * b[2] * along[k], middle[k], corner[k], edge[k], weight);
+}
+
+static void add_middles(const TcLattice *lattice, const int at[3], double *weight) {
+  const double s = lattice->segments[0], x = at[0] / s, y = at[1] / s, z = (double)at[2] / lattice->segments[2];
+  if (lattice->shape == TC_WEDGE) {
+    add_wedge_middles((const double[3]){(s - at[0] - at[1]) / s, x, y}, z, weight);
+  } else {
+    add_tetrahedron_middles((const double[4]){(s - at[0] - at[1] - at[2]) / s, x, y, z}, weight);
+  }
+}
+
 void tc_lattice_weights(const TcLattice *lattice, const int at[3], double *weight) {
   const int *n = lattice->order, *s = lattice->segments;
   for (int k = 0; k < lattice->nodes; ++k) weight[k] = 0;
@@ -344,6 +426,8 @@ void tc_lattice_weights(const TcLattice *lattice, const int at[3], double *weigh
     }
     if (w != 0) give(lattice, own, w, weight);
   }
+  if (lattice->centred)
+    add_middles(lattice, at, weight);
 }
 
 /* ── keys ── */
@@ -397,7 +481,6 @@ TcPointKey tc_lattice_key(const TcLattice *lattice, const int at[3], const uint3
     if (count == 4 && corners > 4) { /* inside: only this cell has it */
       return (TcPointKey){{(uint32_t)cell, (uint32_t)tc_lattice_index(lattice, at), UINT32_MAX, UINT32_MAX}, {0}};
     }
-    divisor = common_divisor(share[corner], divisor);
     int place = count;
     while (place > 0 && key.vertex[place - 1] >= ids[corner]) --place;
     if (place == count || key.vertex[place] != ids[corner]) {
@@ -410,6 +493,8 @@ TcPointKey tc_lattice_key(const TcLattice *lattice, const int at[3], const uint3
     }
     key.share[place] += share[corner]; /* more than one of a collapsed edge */
   }
+  for (int k = 0; k < count; ++k)
+    divisor = common_divisor(key.share[k], divisor);
   for (int k = 0; k < count; ++k) key.share[k] /= divisor;
   return key;
 }

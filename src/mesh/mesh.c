@@ -69,6 +69,21 @@ static TetcastStatus report_tetrahedron(const TetcastMesh *mesh, int64_t i) {
                   mesh->vertices.count);
 }
 
+/* What is computed of coordinates, an eye that sees them all among it, stays finite up to here. */
+static const double largest_coordinate = 1e300;
+
+static TetcastStatus check_bounds(const TetcastMesh *mesh) {
+  for (int k = 0; k < 3; ++k) {
+    const double low = mesh->bounds[2 * k], high = mesh->bounds[2 * k + 1];
+    if (fmax(fabs(low), fabs(high)) <= largest_coordinate)
+      continue;
+    return tc_error(mesh->context, TETCAST_ERROR_DATA,
+                    "the mesh reaches from %g to %g in %c: coordinates may be %g at most", low, high, "xyz"[k],
+                    largest_coordinate);
+  }
+  return TETCAST_OK;
+}
+
 /* Of the vertices that cells name. */
 static void take_bounds(TetcastMesh *mesh, const Check *check) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -101,7 +116,7 @@ static TetcastStatus examine(TetcastContext *context, TetcastMesh *mesh) {
   const bool ok = check.first_bad == INT64_MAX;
   if (ok) take_bounds(mesh, &check);
   tc_release(context, (void *)check.used);
-  return ok ? TETCAST_OK : report_tetrahedron(mesh, check.first_bad);
+  return ok ? check_bounds(mesh) : report_tetrahedron(mesh, check.first_bad);
 }
 
 TetcastStatus tc_mesh_create(TetcastContext *context, const TetcastMeshDesc *desc, TetcastMesh **out) {

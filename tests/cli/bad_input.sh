@@ -25,7 +25,7 @@ done
 render text.vtk render text.vtk
 
 # Arrays.
-for array in nope s:1 v:3 v:-1 v:x v: ''; do
+for array in nope s:1 v:3 v:-1 v:w v:xx v: v:x:y v:point:cell v:cell s:cell 'c d:point' ''; do
   [ -n "$array" ] && render v render good.vtu --array "$array"
 done
 render 'c d' render good.vtu --array nope

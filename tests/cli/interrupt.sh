@@ -9,7 +9,7 @@ for signal in INT:130 TERM:143 HUP:129 INT:130:0.2; do # the last while librarie
   start=$(date +%s%N)
   IFS=: read -r name expected delay <<<"$signal"
   timeout --preserve-status -k 20 -s "$name" "${delay:-1}" "$tetcast" render cube.vtu -o big.tif --size 4000x4000 \
-    --samples 1024 --stats stats.json --save-scene scene.json 2>"$work.err"
+    --samples 1024 --array s --stats stats.json --save-scene scene.json 2>"$work.err"
   code=$?
   elapsed=$((($(date +%s%N) - start) / 1000000))
   [ "$code" = "$expected" ] || fail "exit code $code after $name"

@@ -75,7 +75,7 @@ grep -q '"error": null' other.json || fail 'another integrator states an error'
 scalar='0 1 nan 2 3 4 6 5' vtu nan.vtu "$five_tetrahedra" 10
 warn 'NaN' render nan.vtu -o nan.png --size 40x30
 scalar='nan nan nan nan nan nan nan 0' vtu empty.vtu "$five_tetrahedra" 10
-warn 'NaN' render empty.vtu -o empty.png --size 40x30
+warn 'NaN' render empty.vtu --array s -o empty.png --size 40x30
 
 # Cell data, constant in each and averaged.
 accept render cube.vtu -o cells.tif --array 'c d' --size 61x47 --pixel-type double
@@ -125,7 +125,7 @@ rm -f ./*.json
 for name in full.png full.exr full.tif full.jpg; do
   for blocks in 0 1 2 8; do
     echo old >$name
-    (ulimit -f $blocks && "$tetcast" render cube.vtu -o $name --size 400x300) 2>&1 | cat >err
+    (ulimit -f $blocks && "$tetcast" render cube.vtu -o $name --size 400x300 --array s) 2>&1 | cat >err
     [ "$(wc -l <err)" = 1 ] && grep -q "^tetcast: error: .*$name.*too large" err ||
       fail "$name at $blocks KiB: $(cat err)"
     [ "$(cat $name)" = old ] || fail "$name at $blocks KiB was changed"

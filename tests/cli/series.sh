@@ -114,7 +114,7 @@ for signal in INT:130 TERM:143; do
   IFS=: read -r name expected <<<"$signal"
   rm -f slow*
   # a shell keeps SIGINT from what runs beside it, unless it is told not to
-  env --default-signal=INT "$tetcast" render s.pvd -o slow.##.png --size 600x600 --samples 64 --stats slow.json --save-scene slow-scene.json 2>"$work.err" &
+  env --default-signal=INT "$tetcast" render s.pvd --array s -o slow.##.png --size 600x600 --samples 64 --stats slow.json --save-scene slow-scene.json 2>"$work.err" &
   pid=$!
   for _ in $(seq 600); do
     [ ! -e slow.00.png ] || break
@@ -130,7 +130,7 @@ for signal in INT:130 TERM:143; do
   [ ! -e slow.02.png ] && [ ! -e slow.json ] && [ ! -e slow-scene.json ] && [ -z "$(find . -name '.tetcast*')" ] ||
     fail "files are left: $(files)"
 done
-accept render s.pvd -o slow.##.png --size 600x600 --samples 64 --resume --quiet
+accept render s.pvd --array s -o slow.##.png --size 600x600 --samples 64 --resume --quiet
 exists slow.00.png slow.01.png slow.02.png
 
 # A step that can't be read ends the run, and what was made stays.
@@ -147,7 +147,7 @@ refuse 1 "step 2: bad.pvd: has no array 's'" render bad.pvd --time all $small -o
 scalar='0 nan 3 2 3 4 6 5' vtu a.vtu "$five_tetrahedra" 10
 scalar='0 nan 30 nan 30 40 60 50' vtu b.vtu "$five_tetrahedra" 10
 warn 'NaN' render s.pvd --time all $small -o nan.png
-"$tetcast" render s.pvd --time all $small -o nan.png 2>err
+"$tetcast" render s.pvd --time all --array s $small -o nan.png 2>err
 [ "$(wc -l <err)" = 1 ] || fail "$(cat err)"
 
 # A series of a format whose files are tried in a child process first, also after pictures have been made.

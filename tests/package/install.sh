@@ -26,7 +26,7 @@ prefix=$work/moved
 # Nothing installed may know where it was built or first installed; in libraries, messages may name a source file.
 { grep -rlF -e "$build" -e "$work/first" "$prefix" || grep -rlIF -e "$source" "$prefix"; } >"$work/log" &&
   fail "installed files know the build: $(cat "$work/log")"
-for file in "$prefix"/lib*/*.so "$prefix"/lib/*/*.so "$prefix"/bin/*; do
+for file in "$prefix"/lib*/*.so "$prefix"/lib/*/*.so "$prefix"/bin/* "$prefix"/libexec/tetcast/*; do
   [ -f "$file" ] || continue
   path=$(readelf -d "$file" | sed -n 's/.*(R.*PATH).*\[\(.*\)\]/\1/p')
   case $path in
@@ -121,4 +121,13 @@ if [ -x "$prefix/bin/tetcast" ]; then
       [ -s "$work/installed.png" ] || fail "the installed command wrote no picture"
       ;;
   esac
+
+  # And so do the programs that read a file each.
+  printf 'FORMAT\ntype: ensight\nGEOMETRY\nmodel: e.geo\n' >"$work/e.case"
+  printf '%s\n' e e 'node id off' 'element id off' coordinates 4 >"$work/e.geo"
+  printf '%12.5e%12.5e%12.5e\n' 0 0 0 1 0 0 0 1 0 0 0 1 >>"$work/e.geo"
+  printf '%s\n' 'part 1' part tetra4 1 '       1       2       3       4' >>"$work/e.geo"
+  if "$prefix/bin/tetcast" info --formats 2>/dev/null | grep -qF .case; then
+    quietly "$prefix/bin/tetcast" info "$work/e.case"
+  fi
 fi

@@ -41,11 +41,23 @@ static const Kind kinds[] = {{TETCAST_CELL_QUADRATIC_HEXAHEDRON, 8, 20, {2, 2, 2
                              {TETCAST_CELL_LAGRANGE_TETRAHEDRON, 4, 56, {5, 5, 5}},
                              {TETCAST_CELL_BEZIER_TETRAHEDRON, 4, 56, {5, 5, 5}},
                              {TETCAST_CELL_QUADRATIC_PYRAMID, 5, 13, {2, 2, 2}},
-                             {TETCAST_CELL_TRIQUADRATIC_PYRAMID, 5, 19, {2, 2, 2}}};
+                             {TETCAST_CELL_TRIQUADRATIC_PYRAMID, 5, 19, {2, 2, 2}},
+                             {TETCAST_CELL_LAGRANGE_WEDGE, 6, 21, {2, 2, 2}},
+                             {TETCAST_CELL_LAGRANGE_TETRAHEDRON, 4, 15, {2, 2, 2}}};
 enum { KINDS = sizeof kinds / sizeof *kinds };
+
+/* In twelfths, the middles of triangles and of the cell that two kinds have as well, and their first numbers. */
+static const int tetrahedron_middles[5][3] = {{4, 4, 0}, {4, 0, 4}, {4, 4, 4}, {0, 4, 4}, {3, 3, 3}};
+static const int wedge_middles[6][3] = {{4, 4, 0}, {4, 4, 12}, {6, 0, 6}, {6, 6, 6}, {0, 6, 6}, {4, 4, 6}};
 
 /* Where node i of the cell is, in its own coordinates from 0 to 1. */
 static void place_node(const Kind *kind, int i, double at[3]) {
+  if ((kind->nodes == 15 && kind->shape == 4 && i >= 10) || (kind->nodes == 21 && i >= 15)) {
+    const int *place = kind->shape == 4 ? tetrahedron_middles[i - 10] : wedge_middles[i - 15];
+    for (int d = 0; d < 3; ++d)
+      at[d] = place[d] / 12.0;
+    return;
+  }
   const signed char *number = kind->nodes == 80 ? hexahedron343 : kind->nodes == 50 ? wedge34 : kind->nodes == 56 ? tetrahedron5 : NULL;
   if (kind->shape == 5) {
     const bool side = i >= 9 && i < 13; /* in the middle of an edge to the apex */
@@ -234,6 +246,161 @@ static void test_shape_functions(void **state) {
   }
 }
 
+/* Functions that cells with nodes in the middles of their triangles have: those of second order, the products of three
+ * corners' shares, and of all four; of a wedge those of a triangle times 1, z and z². */
+static int span(const Kind *kind, const double p[3], double value[21]) {
+  const double x = p[0], y = p[1], z = p[2];
+  if (kind->shape == 6) {
+    const double flat[7] = {1, x, y, x * x, x * y, y * y, x * y * (1 - x - y)};
+    for (int i = 0; i < 21; ++i)
+      value[i] = flat[i % 7] * (i < 7 ? 1 : i < 14 ? z : z * z);
+    return 21;
+  }
+  const double w = 1 - x - y - z;
+  const double all[15] = {1,     x,     y,         z,         x * x,     y * y,     z * z,        x * y,
+                          y * z, z * x, w * x * y, w * x * z, x * y * z, w * y * z, w * x * y * z};
+  memcpy(value, all, sizeof all);
+  return 15;
+}
+
+/* Coefficients of these that make the function which has these values at the nodes, by elimination. */
+static void solve(const Kind *kind, const double *values, double coefficient[21]) {
+  double row[21][22];
+  int n = kind->nodes;
+  for (int i = 0; i < n; ++i) {
+    double at[3];
+    place_node(kind, i, at);
+    assert_int_equal(span(kind, at, row[i]), n);
+    row[i][n] = values[i];
+  }
+  for (int k = 0; k < n; ++k) {
+    int best = k;
+    for (int i = k; i < n; ++i)
+      best = fabs(row[i][k]) > fabs(row[best][k]) ? i : best;
+    for (int j = 0; j <= n; ++j) {
+      const double swap = row[k][j];
+      row[k][j] = row[best][j];
+      row[best][j] = swap;
+    }
+    for (int i = 0; i < n; ++i) {
+      const double factor = i == k ? 0 : row[i][k] / row[k][k];
+      for (int j = k; j <= n; ++j)
+        row[i][j] -= factor * row[k][j];
+    }
+  }
+  for (int k = 0; k < n; ++k)
+    coefficient[k] = row[k][n] / row[k][k];
+}
+
+/* What the nodes in the middles say counts wherever such a cell is cut. */
+static void test_middles(void **state) {
+  (void)state;
+  static const double o[3] = {0, 0, 0}, e[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (int k = KINDS - 2; k < KINDS; ++k) {
+    const Kind *kind = &kinds[k];
+    for (int subdivision = 0; subdivision <= 7; ++subdivision) {
+      uint64_t seed = (uint64_t)subdivision + 1;
+      Build build = {0};
+      add_curved(&build, kind, o, e[0], e[1], e[2], kind->shape == 6 ? 0.5 : 1.0 / 6);
+      double values[21], coefficient[21], added[1000];
+      for (int i = 0; i < kind->nodes; ++i)
+        values[build.nodes[i]] = uniform(&seed);
+      solve(kind, values, coefficient);
+      Result result = cut_build(&build, 1, subdivision);
+      const TetcastArray array = {values, TETCAST_TYPE_FLOAT64, kind->nodes, 0};
+      assert_in_range(result.info.added_vertices, 0, 1000);
+      assert_true(tetcast_cut_interpolate(result.cut, &array, 1, added));
+      for (int64_t i = 0; i < result.info.added_vertices; ++i) {
+        double terms[21], expected = 0;
+        const int n = span(kind, result.points[build.point_count + i], terms);
+        for (int j = 0; j < n; ++j)
+          expected += coefficient[j] * terms[j];
+        assert_true(fabs(added[i] - expected) < 1e-11);
+      }
+      assert_true(subdivision != 3 || result.info.added_vertices > 0);
+      result_release(&result);
+      build_release(&build);
+    }
+  }
+}
+
+/* The middle of some nodes, which is a node of its own for each set of different ones. */
+static int64_t middle_of(Build *build, const int64_t *corner, const int *which, int count) {
+  double p[3] = {0, 0, 0};
+  for (int i = 0; i < count; ++i) {
+    for (int d = 0; d < 3; ++d)
+      p[d] += build->points[corner[which[i]]][d] / count;
+  }
+  return point_at(build, p);
+}
+
+/* A hexahedron of second order of 20, 24 or 27 nodes with corners that may be the same. */
+static void add_second(Build *build, const int64_t corner[8], int nodes, double volume) {
+  static const int edge[12][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
+                                  {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+  static const int face[6][4] = {{0, 3, 7, 4}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 2, 6, 7}, {0, 1, 2, 3}, {4, 5, 6, 7}},
+                   all[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+  int64_t node[27];
+  for (int i = 0; i < 8; ++i)
+    node[i] = corner[i];
+  for (int i = 0; i < 12; ++i)
+    node[8 + i] = middle_of(build, corner, edge[i], 2);
+  for (int i = 0; i < 6; ++i)
+    node[20 + i] = middle_of(build, corner, face[i], 4);
+  node[26] = middle_of(build, corner, all, 8);
+  const unsigned type = nodes == 20   ? TETCAST_CELL_QUADRATIC_HEXAHEDRON
+                        : nodes == 24 ? TETCAST_CELL_BIQUADRATIC_QUADRATIC_HEXAHEDRON
+                                      : TETCAST_CELL_TRIQUADRATIC_HEXAHEDRON;
+  build_cell(build, type, nodes, node, volume);
+}
+
+/* Wedges, pyramids and tetrahedra written as hexahedra of second order, and a ring of such wedges around an axis: what
+ * becomes one is one. */
+static void test_collapsed(void **state) {
+  (void)state;
+  static const int64_t single[4][8] = {
+      {0, 1, 2, 2, 4, 5, 6, 6}, {0, 1, 2, 0, 4, 5, 6, 4}, {0, 1, 2, 3, 8, 8, 8, 8}, {0, 1, 2, 2, 4, 4, 4, 4}};
+  static const double volumes[4] = {0.5, 0.5, 1.0 / 3, 1.0 / 6};
+  static const double corner[9][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},    {0, 0, 1},
+                                      {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0.5, 0.5, 1}};
+  static const double ring[5][2] = {{0, 0}, {1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+  static const int sizes[3] = {20, 24, 27};
+  for (int which = 0; which < 5; ++which) {
+    for (int round = 0; round < 36; ++round) {
+      uint64_t seed = (uint64_t)round + 1;
+      const int nodes = sizes[round % 3], subdivision = round / 3 % 4;
+      Build build = {0};
+      if (which < 4) {
+        for (int i = 0; i < 9; ++i)
+          build_point(&build, corner[i][0], corner[i][1], corner[i][2]);
+        add_second(&build, single[which], nodes, volumes[which]);
+      } else {
+        for (int i = 0; i < 10; ++i)
+          build_point(&build, ring[i % 5][0], ring[i % 5][1], i / 5);
+        for (int i = 0; i < 4; ++i) {
+          const int64_t a = 1 + i, b = 1 + (i + 1) % 4, v[8] = {0, a, b, 0, 5, 5 + a, 5 + b, 5};
+          add_second(&build, v, nodes, 0.5);
+        }
+      }
+      build_shuffle(&build, &seed);
+      Result result = cut_build(&build, 1, subdivision);
+      check_volumes(&build, &result, 1e-12);
+      check_faces(&result);
+      assert_true(fabs(result.enclosed - result.volume) < 1e-12);
+      assert_true(result.smallest > 1e-6);
+      assert_int_equal(result.info.collapsed, build.cell_count);
+      assert_int_equal(result.info.folded + result.info.empty, 0);
+      const int64_t n = subdivision ? subdivision : 2;
+      /* A cell's bottom and top have n triangles at the edge that has collapsed and 2n(n - 1) others each; its outside
+       * has 2n². */
+      if (which == 4)
+        assert_int_equal(result.boundary, 4 * (2 * (n + 2 * n * (n - 1)) + 2 * n * n));
+      result_release(&result);
+      build_release(&build);
+    }
+  }
+}
+
 /* A quarter of a circle is rational: the points of a rational Bezier cell are on it. */
 static void test_rational(void **state) {
   (void)state;
@@ -268,7 +435,8 @@ static void test_rational(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pairs), cmocka_unit_test(test_mixed),
-                                     cmocka_unit_test(test_shape_functions), cmocka_unit_test(test_rational)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pairs),           cmocka_unit_test(test_mixed),
+                                     cmocka_unit_test(test_shape_functions), cmocka_unit_test(test_rational),
+                                     cmocka_unit_test(test_middles),         cmocka_unit_test(test_collapsed)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -40,6 +40,23 @@ static void bad_meshes_are_refused(void **state) {
   assert_non_null(strstr(fixture.message, "vertex 2"));
   nan_vertex[2][1] = -INFINITY;
   assert_int_equal(create(&fixture, nan_vertex[0], 5, good, 1, &mesh), TETCAST_ERROR_DATA);
+  static const double far[2] = {1.001e300, -1.7e308};
+  for (int i = 0; i < 2; ++i) { /* whose extent overflows, or would in what is computed of it */
+    nan_vertex[2][1] = far[i];
+    assert_int_equal(create(&fixture, nan_vertex[0], 5, good, 1, &mesh), TETCAST_ERROR_DATA);
+    assert_non_null(strstr(fixture.message, "the mesh reaches from"));
+    assert_non_null(strstr(fixture.message, "in y: coordinates may be 1e+300 at most"));
+    memcpy(nan_vertex, corners, sizeof corners);
+    nan_vertex[4][1] = far[i]; /* of no cell */
+    assert_int_equal(create(&fixture, nan_vertex[0], 5, good, 1, &mesh), TETCAST_OK);
+    tetcast_mesh_destroy(&mesh);
+    mesh = (TetcastMesh *)&fixture;
+  }
+  memcpy(nan_vertex, corners, sizeof corners);
+  nan_vertex[2][1] = 1e300;
+  assert_int_equal(create(&fixture, nan_vertex[0], 5, good, 1, &mesh), TETCAST_OK);
+  tetcast_mesh_destroy(&mesh);
+  mesh = (TetcastMesh *)&fixture;
   assert_int_equal(create(&fixture, NULL, 5, good, 1, &mesh), TETCAST_ERROR_ARGUMENT);
   assert_int_equal(create(&fixture, corners[0], -1, good, 1, &mesh), TETCAST_ERROR_ARGUMENT);
   TetcastMeshDesc zero = {0};

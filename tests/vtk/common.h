@@ -23,6 +23,7 @@ typedef struct Fixture {
   TetcastContext *context;
   int errors, warnings;
   char message[4096]; /* the last error */
+  char warning[4096]; /* the last warning */
   char folder[256];
   char path[512]; /* the last that in_folder() made */
 } Fixture;
@@ -31,6 +32,8 @@ static void remember(void *user, TetcastSeverity severity, const char *text) {
   Fixture *fixture = user;
   assert_null(strchr(text, '\n'));
   fixture->warnings += severity == TETCAST_SEVERITY_WARNING;
+  if (severity == TETCAST_SEVERITY_WARNING)
+    snprintf(fixture->warning, sizeof fixture->warning, "%s", text);
   if (severity != TETCAST_SEVERITY_ERROR) return;
   ++fixture->errors;
   snprintf(fixture->message, sizeof fixture->message, "%s", text);

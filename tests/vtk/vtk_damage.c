@@ -51,10 +51,12 @@ static void test_defects(void **state) {
       {"count2.vtk", POINTS "CELLS -1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n", "can't hold"},
       {"word.vtk", POINTS "CELLZ 1 5\n", "cellz"},
       {"values.vtk", POINTS CELL "POINT_DATA 4\nSCALARS a float\nLOOKUP_TABLE default\n1 2 3 4\n",
-       "4 points, but there are 5"},
-      {"length.vtk", POINTS CELL "POINT_DATA 5\nFIELD f 1\na 1 3 float\n1 2 3\n", "'a' has 3 values for 5 points"},
-      {"cells.vtk", POINTS CELL "CELL_DATA 1\nFIELD f 1\nb 1 2 float\n1 2\n", "'b' has 2 values for 1 cells"},
-      {"few.vtk", POINTS CELL "POINT_DATA 5\nSCALARS a float\nLOOKUP_TABLE default\n1 2 3 4\n", "ascii"},
+       "'a' can't be read: it has 4 values for 5 points"},
+      {"length.vtk", POINTS CELL "POINT_DATA 5\nFIELD f 1\na 1 3 float\n1 2 3\n",
+       "'a' can't be read: it has 3 values for 5 points"},
+      {"cells.vtk", POINTS CELL "CELL_DATA 1\nFIELD f 1\nb 1 2 float\n1 2\n",
+       "'b' can't be read: it has 2 values for 1 cells"},
+      {"few.vtk", POINTS CELL "POINT_DATA 5\nSCALARS a float\nLOOKUP_TABLE default\n1 2 3 4\n", "it has 4 of 5 values"},
       {"minus.vtk", POINTS CELL "POINT_DATA 5\nSCALARS a float -3\nLOOKUP_TABLE default\n1 2 3 4 5\n",
        "more than the file can hold"},
       {"minus2.vtk", POINTS CELL "POINT_DATA 5\nFIELD f 1\na -1 5 float\n1 2 3 4 5\n", "FIELD claims a count of -1"},
@@ -92,11 +94,14 @@ static void test_defects(void **state) {
            "</PointData>" FOUR CELLS("0 1 2 3", "4", "10")),
        "'a'"},
       {"blocks.vtu", /* one block, of no size, the last of 16 bytes */
-     "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\" compressor=\"vtkZLibDataCompressor\">"
-     "<UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><PointData><DataArray type=\"Float32\" Name=\"a\" "
-     "format=\"binary\">AQAAAAAAAAAQAAAACAAAAA==eJwDAAAAAAE=</DataArray></PointData>" FOUR CELLS("0 1 2 3", "4", "10")
-     "</Piece></UnstructuredGrid></VTKFile>", "'a' has less data"},
-    {"pieces.pvtu",
+       "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\" "
+       "compressor=\"vtkZLibDataCompressor\">"
+       "<UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><PointData><DataArray type=\"Float32\" "
+       "Name=\"a\" "
+       "format=\"binary\">AQAAAAAAAAAQAAAACAAAAA==eJwDAAAAAAE=</DataArray></PointData>" FOUR CELLS(
+           "0 1 2 3", "4", "10") "</Piece></UnstructuredGrid></VTKFile>",
+       "'a' can't be read: it has less data"},
+      {"pieces.pvtu",
        "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\"><PUnstructuredGrid><PPoints><PDataArray type=\"Float32\" "
        "NumberOfComponents=\"3\"/></PPoints><Piece Source=\"gone.vtu\"/></PUnstructuredGrid></VTKFile>",
        "gone.vtu: can't be opened"},

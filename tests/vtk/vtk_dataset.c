@@ -156,7 +156,7 @@ static void test_default_field(void **state) {
       {"<PointData><DataArray type='Float64' Name='v' NumberOfComponents='2' format='ascii'>3 4 3 4 3 4 3 "
        "4</DataArray></PointData>"
        "<CellData><DataArray type='Float64' Name='c' format='ascii'>5</DataArray></CellData>",
-       "c"},
+       "v"},
       {"<PointData><DataArray type='Float64' Name='v' NumberOfComponents='2' format='ascii'>3 4 3 4 3 4 3 "
        "4</DataArray></PointData>",
        "v"},
@@ -188,6 +188,67 @@ static void test_default_field(void **state) {
   assert_int_equal(tetcast_dataset_field(dataset, NULL, &field, NULL), TETCAST_ERROR_DATA);
   assert_complaint(fixture, "a.vtu", "no arrays");
   tetcast_dataset_destroy(&dataset);
+}
+
+/* A wedge of 21 nodes, slightly bent, in each of the orders in which programs list them: VTK's, one with the edges in
+ * Exodus's, and Exodus's. */
+static void test_wedge_orders(void **state) {
+  static const int corners[6][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+  static const char *const places[15] = {"01", "12",  "02",  "34",   "45",   "35",   "03",    "14",
+                                         "25", "012", "345", "0134", "1245", "0235", "012345"};
+  static const int orders[3][15] = {{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14},
+                                    {0, 1, 2, 6, 7, 8, 3, 4, 5, 11, 12, 13, 9, 10, 14},
+                                    {0, 1, 2, 6, 7, 8, 3, 4, 5, 14, 9, 10, 12, 13, 11}};
+  Fixture *fixture = *state;
+  for (int bent = 0; bent < 2; ++bent) {
+    double volume[3];
+    for (int order = 0; order < 3; ++order) {
+      char points[2048] = "", values[1024] = "", numbers[128] = "", text[8192];
+      for (int i = 0; i < 21; ++i) {
+        double p[3] = {0};
+        const char *place = i < 6 ? (const char[2]){(char)('0' + i), 0} : places[orders[order][i - 6]];
+        for (const char *c = place; *c; ++c) {
+          for (int k = 0; k < 3; ++k)
+            p[k] += corners[*c - '0'][k] / (double)strlen(place);
+        }
+        for (int k = 0; k < 3 && bent; ++k)
+          p[k] += 0.05 * p[(k + 1) % 3] * p[(k + 1) % 3];
+        snprintf(points + strlen(points), sizeof points - strlen(points), "%.17g %.17g %.17g ", p[0], p[1], p[2]);
+        snprintf(values + strlen(values), sizeof values - strlen(values), "%.17g ", p[0] + 2 * p[1] + 4 * p[2]);
+        snprintf(numbers + strlen(numbers), sizeof numbers - strlen(numbers), "%d ", i);
+      }
+      snprintf(text, sizeof text,
+               "<VTKFile type='UnstructuredGrid' version='2.2' byte_order='LittleEndian'><UnstructuredGrid><Piece "
+               "NumberOfPoints='21' NumberOfCells='1'>"
+               "<PointData><DataArray type='Float64' Name='s' "
+               "format='ascii'>%s</DataArray></PointData><Points><DataArray type='Float64'"
+               " NumberOfComponents='3' format='ascii'>%s</DataArray></Points><Cells><DataArray type='Int32' "
+               "Name='connectivity' format='ascii'>%s</DataArray>"
+               "<DataArray type='Int32' Name='offsets' format='ascii'>21</DataArray><DataArray type='UInt8' "
+               "Name='types' format='ascii'>73</DataArray></Cells>"
+               "</Piece></UnstructuredGrid></VTKFile>",
+               values, points, numbers);
+      fixture->warnings = 0;
+      TetcastDataset *dataset = read_good(fixture, text_file(fixture, "w.vtu", text));
+      TetcastMesh *mesh;
+      TetcastField *field;
+      TetcastMeshHealth health;
+      assert_int_equal(fixture->warnings, 0);
+      assert_int_equal(tetcast_dataset_mesh(dataset, &mesh), TETCAST_OK);
+      assert_int_equal(tetcast_mesh_health(fixture->context, mesh, &health), TETCAST_OK);
+      volume[order] = health.volume;
+      assert_true(fabs(health.volume - volume[0]) < 1e-12 && (bent || fabs(health.volume - 0.5) < 1e-12));
+      assert_int_equal(tetcast_dataset_field(dataset, NULL, &field, NULL), TETCAST_OK);
+      for (int64_t i = 0; i < tetcast_mesh_vertex_count(mesh); ++i) {
+        double p[3];
+        tetcast_mesh_vertex(mesh, i, p);
+        assert_true(fabs(tetcast_field_value(field, i) - (p[0] + 2 * p[1] + 4 * p[2])) < 1e-12);
+      }
+      tetcast_field_destroy(&field);
+      tetcast_mesh_destroy(&mesh);
+      tetcast_dataset_destroy(&dataset);
+    }
+  }
 }
 
 /* The length of a vector whose squares over- or underflow. */
@@ -494,12 +555,19 @@ static void test_threads(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      TEST(test_mixed_cells),       TEST(test_selectors),
-      TEST(test_default_field),     TEST(test_magnitude),
-      TEST(test_legacy_attributes), TEST(test_content_beats_extension),
-      TEST(test_encodings),         TEST(test_pieces),
-      TEST(test_others_files),      TEST(test_conforming),
-      TEST(test_added_vertices),    TEST(test_threads),
+      TEST(test_mixed_cells),
+      TEST(test_selectors),
+      TEST(test_default_field),
+      TEST(test_wedge_orders),
+      TEST(test_magnitude),
+      TEST(test_legacy_attributes),
+      TEST(test_content_beats_extension),
+      TEST(test_encodings),
+      TEST(test_pieces),
+      TEST(test_others_files),
+      TEST(test_conforming),
+      TEST(test_added_vertices),
+      TEST(test_threads),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -156,6 +156,32 @@ static void test_series(void **state) {
     assert_true(tetcast_dataset_time(dataset, 0, NULL) == (i == 1));
     tetcast_dataset_destroy(&dataset);
   }
+  /* Paths as Windows has them, unless a file is called so. */
+  char folder[600], name[700];
+  snprintf(folder, sizeof folder, "%s/sub", fixture->folder);
+  assert_int_equal(mkdir(folder, 0700), 0);
+  snprintf(name, sizeof name, "%s/p.vtu", folder);
+  sample_layers(name, 0, 4, GHOST_NONE);
+  static const char *const lists[][2] = {
+      {"w.pvd", PVD(ENTRY("1", "sub\\p.vtu"))},
+      {"w.vtu.series", "{\"files\": [{\"name\": \"sub\\\\p.vtu\", \"time\": 1}]}"},
+      {"w.pvtu", "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\"><PUnstructuredGrid><Piece "
+                 "Source=\"sub\\p.vtu\"/></PUnstructuredGrid></VTKFile>\n"},
+      {"w.vtm", "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet><DataSet index=\"0\" "
+                "file=\".\\sub\\p.vtu\"/></vtkMultiBlockDataSet></VTKFile>\n"}};
+  for (int i = 0; i < 4; ++i) {
+    TetcastDataset *dataset =
+        read_with(fixture, text_file(fixture, lists[i][0], lists[i][1]), tetcast_dataset_desc_default());
+    assert_layers(fixture, dataset, 0, 4, 1, true);
+    tetcast_dataset_destroy(&dataset);
+  }
+  sample_layers(in_folder(fixture, "sub\\p.vtu"), 0, 2, GHOST_NONE);
+  TetcastDataset *named = read_with(fixture, in_folder(fixture, "w.pvd"), tetcast_dataset_desc_default());
+  assert_layers(fixture, named, 0, 2, 1, true);
+  tetcast_dataset_destroy(&named);
+  read_bad(fixture, text_file(fixture, "d.pvd", PVD(ENTRY("1", "C:\\run\\p.vtu"))), TETCAST_ERROR_IO, "C:");
+  unlink(name);
+  rmdir(folder);
   TetcastDatasetDesc desc = of_time(INFINITY);
   TetcastDataset *dataset;
   assert_int_equal(tetcast_dataset_read(fixture->context, paths[0], &desc, &dataset), TETCAST_ERROR_ARGUMENT);

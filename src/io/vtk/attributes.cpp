@@ -36,7 +36,8 @@ Column *column_of(std::vector<Column> *columns, const std::string &name, size_t 
   return &columns->back();
 }
 
-std::vector<Column> columns_of(const std::vector<tcv::Piece> &pieces, TetcastAssociation association) {
+std::vector<Column> columns_of(const std::vector<tcv::Piece> &pieces, TetcastAssociation association,
+                               std::vector<tcv::UnreadArray> *unread) {
   const bool of_points = association == TETCAST_POINT;
   std::vector<Column> columns;
   for (size_t p = 0; p < pieces.size(); ++p) {
@@ -48,7 +49,8 @@ std::vector<Column> columns_of(const std::vector<tcv::Piece> &pieces, TetcastAss
       vtkDataArray *array = attributes->GetArray(i);
       const std::string name = array && array->GetName() ? array->GetName() : "";
       if (!array || array->GetNumberOfComponents() < 1 || tcv::is_ghost_array(name)) continue;
-      tcv::check_length(pieces[p].place.c_str(), of_points ? "point" : "cell", name, array, count);
+      if (!tcv::has_length(pieces[p].place, {association, name}, array, count, unread))
+        continue;
       Column *column = column_of(&columns, name, pieces.size());
       if (column->parts[p]) continue;
       column->parts[p] = array;
@@ -80,6 +82,8 @@ void make_whole(Column *column, int64_t count) {
   column->whole = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(keep ? type : VTK_DOUBLE));
   column->whole->SetName(column->name.c_str());
   column->whole->SetNumberOfComponents(column->components);
+  if (first->HasAComponentName())
+    column->whole->CopyComponentNames(first);
   column->whole->SetNumberOfTuples(count);
   if (column->missing > 0) column->whole->Fill(std::numeric_limits<double>::quiet_NaN());
 }
@@ -230,19 +234,23 @@ bool numbers_things(vtkDataSetAttributes *attributes, vtkDataArray *array) {
          name == "vtkOriginalCellIds";
 }
 
-void check_length(const char *place, const char *what, const std::string &name, vtkDataArray *array, int64_t count) {
-  if (array->GetNumberOfTuples() == count) return;
-  fail(TETCAST_ERROR_DATA, "%s: %s array '%s' has %lld values for %lld %ss", place, what, name.c_str(),
-       static_cast<long long>(array->GetNumberOfTuples()), static_cast<long long>(count), what);
+bool has_length(const std::string &place, const ArrayName &name, vtkDataArray *array, int64_t count,
+                std::vector<UnreadArray> *unread) {
+  if (array->GetNumberOfTuples() == count)
+    return true;
+  note_unread(unread, name,
+              (place.empty() ? "" : place + ": ") + "it has " + std::to_string(array->GetNumberOfTuples()) +
+                  " values for " + std::to_string(count) + " " + word_of(name.association) + "s");
+  return false;
 }
 
-void join_arrays(const Reading &reading, const std::vector<Piece> &pieces, const std::vector<PieceMap> &maps, vtkUnstructuredGrid *grid,
-                 Differences *differences) {
-  auto points = columns_of(pieces, TETCAST_POINT);
+void join_arrays(const Reading &reading, const std::vector<Piece> &pieces, const std::vector<PieceMap> &maps,
+                 vtkUnstructuredGrid *grid, Differences *differences, std::vector<UnreadArray> *unread) {
+  auto points = columns_of(pieces, TETCAST_POINT, unread);
   PointJoiner joiner(maps, grid->GetNumberOfPoints());
   join(reading, "point", grid->GetNumberOfPoints(), &points, grid->GetPointData(), [&](Column *column) { joiner.join(column); });
   *differences = joiner.differences;
-  auto cells = columns_of(pieces, TETCAST_CELL);
+  auto cells = columns_of(pieces, TETCAST_CELL, unread);
   join(reading, "cell", grid->GetNumberOfCells(), &cells, grid->GetCellData(), [&](Column *column) { join_cells(pieces, maps, column); });
   warn_of_missing(reading, pieces.size(), points, cells);
 }

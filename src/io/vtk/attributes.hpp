@@ -16,13 +16,18 @@ struct Differences {
   std::string array; // the first that has any
 };
 
-// Adds the arrays to `grid`, which has its points and cells, and warns of what is missing.
-void join_arrays(const Reading &reading, const std::vector<Piece> &pieces, const std::vector<PieceMap> &maps, vtkUnstructuredGrid *grid,
-                 Differences *differences);
+// Adds the arrays to `grid`, which has its points and cells, and warns of what is missing. Those of the wrong length
+// are noted as unread.
+void join_arrays(const Reading &reading, const std::vector<Piece> &pieces, const std::vector<PieceMap> &maps,
+                 vtkUnstructuredGrid *grid, Differences *differences, std::vector<UnreadArray> *unread);
 
 bool is_ghost_array(const std::string &name);
 bool numbers_things(vtkDataSetAttributes *attributes, vtkDataArray *array); // identifies points or cells
-void check_length(const char *place, const char *what, const std::string &name, vtkDataArray *array, int64_t count); // fails
+
+// Whether an array has a value for each of `count` points or cells; notes it as unread if not. `place` is empty where
+// there is one alone.
+bool has_length(const std::string &place, const ArrayName &name, vtkDataArray *array, int64_t count,
+                std::vector<UnreadArray> *unread);
 
 } // namespace tcv
 

@@ -5,6 +5,7 @@
 
 #include <cstring>
 #include <mutex>
+#include <utility>
 
 #include <vtkLogger.h>
 #include <vtkObjectFactory.h>
@@ -115,6 +116,27 @@ Capture::~Capture() {
   vtkObject::SetGlobalWarningDisplay(previous_display);
   if (vtkOutputWindow::GetInstance() == our_window()) vtkOutputWindow::SetInstance(previous);
   previous = nullptr;
+}
+
+Doubt::Doubt() : capture_(current) {
+  if (!capture_)
+    return;
+  std::swap(failed_, capture_->failed_);
+  std::swap(error_, capture_->error_);
+}
+
+Doubt::~Doubt() {
+  if (!capture_)
+    return;
+  std::swap(failed_, capture_->failed_);
+  std::swap(error_, capture_->error_);
+}
+
+bool Doubt::failed() const {
+  return capture_ && capture_->failed_;
+}
+std::string Doubt::error() const {
+  return capture_ ? capture_->error_ : "";
 }
 
 void Capture::add(const char *text, bool is_error) noexcept {

@@ -204,6 +204,78 @@ void cut_all(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, 
   tetcast_cut_info(cut, &result->info);
 }
 
+// Programs don't agree about the order of a wedge's 21 nodes behind its six corners. For each place of VTK's order, the
+// corners in whose middle its node is, if the wedge is straight, as bits; and which node that is for VTK, with faces in
+// Exodus's way but the sides first, and for Exodus.
+constexpr int WEDGE_NODES = 21;
+struct WedgePlace {
+  unsigned corners;
+  std::array<int, 3> node;
+};
+const std::array<WedgePlace, WEDGE_NODES - 6> wedge_places = {{{003, {6, 6, 6}},
+                                                               {006, {7, 7, 7}},
+                                                               {005, {8, 8, 8}},
+                                                               {030, {9, 12, 12}},
+                                                               {060, {10, 13, 13}},
+                                                               {050, {11, 14, 14}},
+                                                               {011, {12, 9, 9}},
+                                                               {022, {13, 10, 10}},
+                                                               {044, {14, 11, 11}},
+                                                               {007, {15, 18, 16}},
+                                                               {070, {16, 19, 17}},
+                                                               {033, {17, 15, 20}},
+                                                               {066, {18, 16, 18}},
+                                                               {055, {19, 17, 19}},
+                                                               {077, {20, 20, 15}}}};
+
+// How far nodes are from where they would be in a straight wedge, if they come in this order: the sum of squares.
+double disorder(vtkDataArray *points, const vtkIdType *nodes, size_t order) {
+  double sum = 0;
+  for (const WedgePlace &place : wedge_places) {
+    double middle[3] = {}, node[3];
+    int count = 0;
+    for (unsigned i = 0; i < 6; ++i) {
+      if (!(place.corners >> i & 1))
+        continue;
+      double corner[3];
+      points->GetTuple(nodes[i], corner);
+      for (int k = 0; k < 3; ++k)
+        middle[k] += corner[k];
+      ++count;
+    }
+    points->GetTuple(nodes[place.node[order]], node);
+    for (int k = 0; k < 3; ++k)
+      sum += (node[k] - middle[k] / count) * (node[k] - middle[k] / count);
+  }
+  return sum;
+}
+
+// Puts the nodes of each wedge of 21 in VTK's order, from the order in which they are closest to where they should be.
+void order_wedges(vtkUnstructuredGrid *grid, vtkDataArray *points) {
+  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell) {
+    vtkIdType size;
+    const vtkIdType *nodes;
+    if (grid->GetCellTypesArray()->GetValue(cell) != VTK_LAGRANGE_WEDGE ||
+        grid->GetCells()->GetCellSize(cell) != WEDGE_NODES)
+      continue;
+    grid->GetCells()->GetCellAtId(cell, size, nodes);
+    if (std::any_of(nodes, nodes + size,
+                    [&](vtkIdType node) { return node < 0 || node >= points->GetNumberOfTuples(); }))
+      continue; // is told of later
+    size_t best = 0;
+    for (size_t order = 1; order < 3; ++order) {
+      if (disorder(points, nodes, order) < disorder(points, nodes, best))
+        best = order;
+    }
+    std::array<vtkIdType, WEDGE_NODES> ordered;
+    std::copy(nodes, nodes + 6, ordered.begin());
+    for (size_t i = 0; i < wedge_places.size(); ++i)
+      ordered[6 + i] = nodes[wedge_places[i].node[best]];
+    if (best > 0)
+      grid->GetCells()->ReplaceCellAtId(cell, WEDGE_NODES, ordered.data());
+  }
+}
+
 // Puts the vertices that were added after the points.
 void add_points(const tcv::Tetrahedra &tetrahedra, vtkDataArray *points) {
   const int64_t added = tetrahedra.info.added_vertices, count = points->GetNumberOfTuples();
@@ -237,6 +309,7 @@ void make_tetrahedra(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *
     result->view.count = grid->GetNumberOfCells();
     return;
   }
+  order_wedges(grid, points);
   cut_all(path, grid, points, options, result);
   add_points(*result, points);
   result->view = tetcast_cut_tetrahedra(result->cut.get());

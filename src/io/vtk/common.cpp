@@ -121,7 +121,9 @@ std::string file_kind(const std::string &head) {
   if (first == std::string::npos) return "";
   if (head[first] == '<') return head.find("<VTKFile") == std::string::npos ? "" : "VTKFile " + xml_type(head);
   if (head[first] == '{') return "JSON";
-  if (begins_with(head, "$MeshFormat") || (begins_with(head, "$Comments") && head.find("\n$MeshFormat") != std::string::npos)) return "Gmsh";
+  if (begins_with(head, "$MeshFormat") || begins_with(head, "$NOD") ||
+      (begins_with(head, "$Comments") && head.find("\n$MeshFormat") != std::string::npos))
+    return "Gmsh";
   if (begins_with(head, "# vtk DataFile")) return "vtk " + legacy_type(head);
   if (begins_with(head, "\x89HDF")) { // the names of what is at the top come early
     const auto has = [&](const char *name) { return head.find(name) != std::string::npos; };

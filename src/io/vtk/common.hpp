@@ -61,8 +61,26 @@ public:
   void add(const char *text, bool is_error) noexcept;
 
 private:
+  friend class Doubt;
   bool failed_ = false;
   std::string error_, warning_;
+};
+
+// While one lives, errors that this thread's capture gets are put aside: what is being read may fail without the rest.
+class Doubt {
+public:
+  Doubt();
+  ~Doubt();
+  Doubt(const Doubt &) = delete;
+  Doubt &operator=(const Doubt &) = delete;
+
+  bool failed() const;
+  std::string error() const;
+
+private:
+  Capture *capture_; // null: there is none
+  bool failed_ = false;
+  std::string error_; // of before
 };
 
 // What `read` returns; fails if VTK complains while it runs, and passes on what VTK warns of.

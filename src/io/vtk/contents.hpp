@@ -12,7 +12,8 @@
 
 #include <tetcast/dataset.h>
 
-class vtkDataObject;
+#include "arrays.hpp"
+
 class vtkDataSet;
 
 namespace tcv {
@@ -31,6 +32,7 @@ struct Contents {
   std::vector<double> times;       // of all steps, ascending
   int64_t step = 0;
   int64_t surfaces = 0; // parts that were left out as they are known to be no volume
+  std::vector<UnreadArray> unread; // arrays that there are in the file and not in the pieces
 };
 
 // One file being read, perhaps on behalf of another that lists it.
@@ -46,8 +48,7 @@ struct Reading {
 void read_contents(const Reading &reading, Contents *contents);
 void read_part(const Reading &of, const std::string &path, const std::string &block, Contents *contents);
 
-// Adds what VTK read: a grid of any kind, or blocks of such.
-void add_object(const Reading &reading, vtkDataObject *object, Contents *contents);
+// Adds a grid of any kind.
 void add_grid(const Reading &reading, const std::string &block, vtkDataSet *grid, Contents *contents);
 
 // Adds the name of a block there is, of which the pieces come one after the other.
@@ -62,8 +63,10 @@ int64_t choose_step(const std::string &path, const TetcastDatasetDesc &desc, con
 // A structured grid as hexahedra, with the arrays it has; null for flat ones and other kinds of dataset.
 Grid to_hexahedra(const std::string &place, vtkDataSet *dataset);
 
-// Puts the pieces together, which are consumed. A lone piece without ghosts stays as it is.
-Grid unite(const Reading &reading, std::vector<Piece> *pieces, TetcastDatasetPieces *counts);
+// Puts the pieces together, which are consumed. A lone piece without ghosts stays as it is. Arrays of the wrong length
+// are noted as unread.
+Grid unite(const Reading &reading, std::vector<Piece> *pieces, TetcastDatasetPieces *counts,
+           std::vector<UnreadArray> *unread);
 
 } // namespace tcv
 

@@ -4,6 +4,7 @@
 #include "attributes.hpp"
 #include "common.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -25,16 +26,84 @@ static void take_points(vtkUnstructuredGrid *grid, TetcastDataset *dataset) {
   }
 }
 
-static void take_arrays(const char *path, vtkDataSetAttributes *attributes, TetcastAssociation association,
-                        int64_t count, std::vector<Array> *arrays) {
+static void take_arrays(vtkDataSetAttributes *attributes, TetcastAssociation association, int64_t count,
+                        TetcastDataset *dataset) {
   for (int i = 0; i < attributes->GetNumberOfArrays(); ++i) {
     vtkDataArray *data = attributes->GetArray(i); // null for strings
     if (!data || data->GetNumberOfComponents() < 1) continue;
     const std::string name = data->GetName() ? data->GetName() : "";
-    if (is_ghost_array(name)) continue;
-    check_length(path, association == TETCAST_POINT ? "point" : "cell", name, data, count);
-    arrays->push_back({name, association, data, data == attributes->GetScalars(), numbers_things(attributes, data)});
+    if (is_ghost_array(name) || !has_length("", {association, name}, data, count, &dataset->unread))
+      continue;
+    dataset->arrays.push_back(
+        {name, name, association, data, data == attributes->GetScalars(), numbers_things(attributes, data)});
   }
+}
+
+// Fails where a cell's point is further away than can be computed with: the library would, but does not know the file.
+static void check_reach(const TetcastDataset *dataset) {
+  const double most = 1e300;
+  auto *points = vtkDoubleArray::FastDownCast(dataset->points);
+  if (!points)
+    return; // single precision doesn't reach that far
+  const double *values = points->GetPointer(0);
+  const vtkIdType count = points->GetNumberOfValues();
+  if (std::none_of(values, values + count, [&](double value) { return std::fabs(value) > most; }))
+    return;
+  const TetcastArray &view = dataset->tetrahedra.view;
+  for (int64_t i = 0; i < 4 * view.count; ++i) {
+    const bool wide = type_size(view.type) == 8;
+    const int64_t point =
+        wide ? static_cast<const int64_t *>(view.data)[i] : static_cast<const int32_t *>(view.data)[i];
+    for (int64_t k = 3 * point; k < 3 * point + 3; ++k) {
+      if (std::fabs(values[k]) <= most)
+        continue;
+      fail(TETCAST_ERROR_DATA, "%s: point %lld: coordinate %c is %g: meshes may reach to %g at most",
+           dataset->path.c_str(), static_cast<long long>(point), "xyz"[k % 3], values[k], most);
+    }
+  }
+}
+
+static bool has_array(const TetcastDataset *dataset, const ArrayName &array) {
+  return std::any_of(dataset->arrays.begin(), dataset->arrays.end(),
+                     [&](const Array &one) { return one.association == array.association && one.name == array.name; });
+}
+
+// Cell arrays by whose name a point array would be found.
+static void tell_apart(TetcastDataset *dataset) {
+  for (Array &array : dataset->arrays) {
+    if (array.association == TETCAST_CELL && has_array(dataset, {TETCAST_POINT, array.name}))
+      array.selector += ":cell";
+  }
+}
+
+// Arrays that can't be read are left out with a warning, if there is any other; those that were not asked for, without
+// a word.
+static void report_unread(const TetcastDataset *dataset, const char *only) {
+  const UnreadArray *first = nullptr;
+  std::string names;
+  int count = 0;
+  for (const UnreadArray &one : dataset->unread) {
+    const bool asked_for = may_name(only, one.array.name) && (!only || has_array(dataset, one.array));
+    if (one.reason.empty() || (!asked_for && !dataset->arrays.empty()))
+      continue;
+    first = first ? first : &one;
+    names += (names.empty() ? "'" : ", '") + one.array.name + "'";
+    ++count;
+  }
+  if (!first)
+    return;
+  const char *path = dataset->path.c_str(), *reason = first->reason.c_str();
+  if (dataset->arrays.empty()) {
+    fail(TETCAST_ERROR_DATA, "%s: %s array '%s' can't be read: %s", path, word_of(first->array.association),
+         first->array.name.c_str(), reason);
+  }
+  if (count == 1) {
+    tetcast_context_message(dataset->context, TETCAST_SEVERITY_WARNING, "%s: array %s is left out: %s", path,
+                            names.c_str(), reason);
+    return;
+  }
+  tetcast_context_message(dataset->context, TETCAST_SEVERITY_WARNING, "%s: %d arrays are left out: %s; the first: %s",
+                          path, count, names.c_str(), reason);
 }
 
 static Contents read_pieces_of(const Reading &reading) {
@@ -82,12 +151,12 @@ static void read_dataset(TetcastContext *context, const char *path, const Tetcas
   Contents contents = read_pieces_of(reading);
   dataset->context = context;
   dataset->path = path;
-  if (desc.only) dataset->only = desc.only;
   dataset->pieces.surfaces = contents.surfaces;
   dataset->blocks = std::move(contents.blocks);
   dataset->times = std::move(contents.times);
   dataset->step = contents.step;
-  const Grid grid = unite(reading, &contents.pieces, &dataset->pieces);
+  dataset->unread = std::move(contents.unread);
+  const Grid grid = unite(reading, &contents.pieces, &dataset->pieces, &dataset->unread);
   const int64_t points = grid->GetNumberOfPoints(), cells = grid->GetNumberOfCells();
   const TetcastDatasetPieces &pieces = dataset->pieces;
   if (cells == 0 && pieces.nonfinite_cells > 0) {
@@ -105,13 +174,16 @@ static void read_dataset(TetcastContext *context, const char *path, const Tetcas
     options.threads = tetcast_context_threads(context);
     make_tetrahedra(path, grid, dataset->points, options, &dataset->tetrahedra);
   }
+  check_reach(dataset);
   warn_of_cut(dataset);
   if (desc.cell_to_point) {
     dataset->corners = grid->GetCells();
     dataset->types = grid->GetCellTypesArray();
   }
-  take_arrays(path, grid->GetPointData(), TETCAST_POINT, points, &dataset->arrays);
-  take_arrays(path, grid->GetCellData(), TETCAST_CELL, cells, &dataset->arrays);
+  take_arrays(grid->GetPointData(), TETCAST_POINT, points, dataset);
+  take_arrays(grid->GetCellData(), TETCAST_CELL, cells, dataset);
+  tell_apart(dataset);
+  report_unread(dataset, desc.only);
 }
 
 TetcastDatasetDesc tetcast_dataset_desc_default(void) {
@@ -162,6 +234,7 @@ bool tetcast_dataset_array(const TetcastDataset *dataset, int i, TetcastDatasetA
   if (!dataset || !array || i < 0 || static_cast<size_t>(i) >= dataset->arrays.size()) return false;
   const Array &source = dataset->arrays[static_cast<size_t>(i)];
   array->name = source.name.c_str();
+  array->selector = source.selector.c_str();
   array->association = source.association;
   array->components = source.data->GetNumberOfComponents();
   array->type = type_name(source.data);

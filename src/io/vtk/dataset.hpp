@@ -20,7 +20,7 @@
 namespace tcv {
 
 struct Array {
-  std::string name;
+  std::string name, selector; // the selector that names it and no other
   TetcastAssociation association;
   vtkSmartPointer<vtkDataArray> data;
   bool active;
@@ -40,8 +40,8 @@ struct TetcastDataset {
   int64_t step = 0;
   vtkSmartPointer<vtkDataArray> points; // float32 or float64
   tcv::Tetrahedra tetrahedra;
-  std::string only;                        // arrays that were to be read; empty: all
   std::vector<tcv::Array> arrays;          // point arrays first
+  std::vector<tcv::UnreadArray> unread;    // others that there are in the file
   vtkSmartPointer<vtkCellArray> corners;   // of the file's cells, and
   vtkSmartPointer<vtkUnsignedCharArray> types; // theirs; null unless cell arrays are to be averaged
   mutable std::mutex mutex;                // guards the next

@@ -14,64 +14,171 @@ static const int MAGNITUDE = -1;
 struct Selection {
   const Array *array = nullptr;
   int component = MAGNITUDE; // 0 for arrays of one
+  bool whole = true;         // nothing was said about components
 };
 
-static const Array *find_array(const TetcastDataset *dataset, const std::string &name) {
+static double scalar_of(vtkDataArray *data, vtkIdType tuple, int component);
+
+// ── the array drawn when none is named ──
+
+// Whether what is drawn of an array has two values.
+static bool varies(const TetcastDataset *dataset, const Array &array) {
+  const int component = array.data->GetNumberOfComponents() == 1 ? 0 : MAGNITUDE;
+  const auto *cells =
+      static_cast<const int32_t *>(array.association == TETCAST_CELL ? dataset->tetrahedra.source.data : nullptr);
+  const vtkIdType count = cells ? dataset->tetrahedra.source.count : array.data->GetNumberOfTuples();
+  double first = std::nan("");
+  for (vtkIdType i = 0; i < count; ++i) {
+    const double value = scalar_of(array.data, cells ? cells[i] : i, component);
+    if (!std::isfinite(value))
+      continue;
+    if (std::isnan(first))
+      first = value;
+    if (value != first)
+      return true;
+  }
+  return false;
+}
+
+// The active scalars; else of those that vary, or of all if none does, those of points before those of cells, and of
+// each scalars before vectors; what numbers points or cells comes last.
+static const Array *default_array(const TetcastDataset *dataset) {
+  const Array *best = nullptr;
+  int best_rank = 0;
+  for (const Array &array : dataset->arrays) {
+    if (array.active && array.data->GetNumberOfComponents() == 1)
+      return &array;
+    const bool shows = !array.number && varies(dataset, array);
+    const int rank = 1 + 8 * !array.number + 4 * shows + 2 * (array.association == TETCAST_POINT) +
+                     (array.data->GetNumberOfComponents() == 1);
+    if (rank > best_rank)
+      best = &array;
+    best_rank = std::max(rank, best_rank);
+  }
+  return best;
+}
+
+// ── the one that is named ──
+
+// What a selector may say behind the array's name.
+struct Suffixes {
+  std::string association, component; // empty: not said
+};
+
+static const Array *find_array(const TetcastDataset *dataset, const std::string &name, const std::string &association) {
   for (const Array &array : dataset->arrays) { // point arrays come first
-    if (array.name == name) return &array;
+    if (array.name == name && (association.empty() || association == word_of(array.association)))
+      return &array;
   }
   return nullptr;
 }
 
-static const Array *default_array(const TetcastDataset *dataset) {
-  const auto first = [&](auto &&wanted) -> const Array * {
-    const auto found = std::find_if(dataset->arrays.begin(), dataset->arrays.end(), wanted);
-    return found == dataset->arrays.end() ? nullptr : &*found;
-  };
-  const Array *array = first([](const Array &a) { return a.active; });
-  if (!array) array = first([](const Array &a) { return a.data->GetNumberOfComponents() == 1 && !a.number; });
-  if (!array) array = first([](const Array &a) { return !a.number; });
-  return array ? array : first([](const Array &) { return true; });
+// The longest name there is that the selector begins with, and what comes behind.
+static const Array *find_named(const TetcastDataset *dataset, const std::string &selector, Suffixes *suffixes) {
+  std::string name = selector;
+  for (;;) {
+    const Array *array = find_array(dataset, name, suffixes->association);
+    if (array)
+      return array;
+    const size_t colon = name.rfind(':');
+    if (colon == std::string::npos)
+      return nullptr;
+    const std::string suffix = name.substr(colon + 1);
+    if ((suffix == "point" || suffix == "cell") && suffixes->association.empty())
+      suffixes->association = suffix;
+    else if (suffixes->component.empty() && !suffix.empty())
+      suffixes->component = suffix;
+    else
+      return nullptr;
+    name.resize(colon);
+  }
 }
 
-[[noreturn]] static void unknown(const TetcastDataset *dataset, const char *selector) {
-  std::string list;
+// Fails, and says what there is instead, or why it can't be read.
+[[noreturn]] static void unknown(const TetcastDataset *dataset, const std::string &selector) {
+  std::string list; // of all there are
   for (const Array &array : dataset->arrays) {
-    list += (list.empty() ? "" : ", ") + array.name + (array.association == TETCAST_CELL ? " (cells" : "");
     const int components = array.data->GetNumberOfComponents();
-    if (components > 1) {
-      list += (array.association == TETCAST_CELL ? ", " : " (") + std::to_string(components) + " components)";
-    } else if (array.association == TETCAST_CELL) {
-      list += ")";
-    }
+    std::string about = array.association == TETCAST_CELL ? "cells" : "";
+    if (components > 1)
+      about += (about.empty() ? "" : ", ") + std::to_string(components) + " components";
+    list += (list.empty() ? "" : ", ") + array.name + (about.empty() ? "" : " (" + about + ")");
   }
-  fail(TETCAST_ERROR_ARGUMENT, "%s: has no array '%s'; there are: %s", dataset->path.c_str(), selector, list.c_str());
+  for (const UnreadArray &one : dataset->unread) {
+    const bool cells = one.array.association == TETCAST_CELL;
+    const char *about =
+        one.reason.empty() ? (cells ? " (cells)" : "") : (cells ? " (cells, can't be read)" : " (can't be read)");
+    list += (list.empty() ? "" : ", ") + one.array.name + about;
+    if (one.reason.empty() || !may_name(selector.c_str(), one.array.name))
+      continue;
+    fail(TETCAST_ERROR_DATA, "%s: %s array '%s' can't be read: %s", dataset->path.c_str(),
+         word_of(one.array.association), one.array.name.c_str(), one.reason.c_str());
+  }
+  if (list.empty())
+    fail(TETCAST_ERROR_DATA, "%s: has no arrays over points or cells", dataset->path.c_str());
+  fail(TETCAST_ERROR_ARGUMENT, "%s: has no array '%s'; there are: %s", dataset->path.c_str(), selector.c_str(),
+       list.c_str());
+}
+
+static std::string lower_case(std::string text) {
+  for (char &c : text)
+    c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+// The names of an array's components: the file's, or those that are usual. Empty where there are none.
+static std::vector<std::string> component_names(vtkDataArray *data) {
+  static const std::vector<std::string> usual[] = {{"x", "y"},
+                                                   {"x", "y", "z"},
+                                                   {"xx", "yy", "zz", "xy", "yz", "xz"},
+                                                   {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"}};
+  const auto components = static_cast<size_t>(data->GetNumberOfComponents());
+  std::vector<std::string> names(components);
+  bool any = false;
+  for (size_t k = 0; data->HasAComponentName() && k < components; ++k) {
+    const char *name = data->GetComponentName(static_cast<vtkIdType>(k));
+    if (name)
+      names[k] = lower_case(name);
+    any = any || name;
+  }
+  for (const auto &set : usual) {
+    if (!any && set.size() == components)
+      return set;
+  }
+  return any ? names : std::vector<std::string>();
+}
+
+// The component that a suffix means: a number, a name in any case of letters, or "mag".
+static int find_component(const TetcastDataset *dataset, const Array &array, const std::string &part) {
+  if (part == "mag")
+    return MAGNITUDE;
+  const int components = array.data->GetNumberOfComponents();
+  const bool digits = part.size() < 9 && part.find_first_not_of("0123456789") == std::string::npos;
+  if (digits && std::stoi(part) < components)
+    return std::stoi(part);
+  std::string list;
+  const auto names = component_names(array.data);
+  for (size_t k = 0; k < names.size(); ++k) {
+    if (names[k] == lower_case(part))
+      return static_cast<int>(k);
+    list += (k ? ", " : " (") + names[k];
+  }
+  fail(TETCAST_ERROR_ARGUMENT, "%s: array '%s' has no component '%s'; there are: 0 to %d%s and mag",
+       dataset->path.c_str(), array.name.c_str(), part.c_str(), components - 1,
+       list.empty() ? "" : (list + ")").c_str());
 }
 
 static Selection select(const TetcastDataset *dataset, const char *selector) {
-  if (dataset->arrays.empty() && !dataset->only.empty())
-    fail(TETCAST_ERROR_ARGUMENT, "%s: has no array '%s'", dataset->path.c_str(), dataset->only.c_str());
-  if (dataset->arrays.empty())
-    fail(TETCAST_ERROR_DATA, "%s: has no arrays over points or cells", dataset->path.c_str());
   Selection selection;
-  selection.array = selector ? find_array(dataset, selector) : default_array(dataset);
-  if (selection.array) {
-    if (selection.array->data->GetNumberOfComponents() == 1) selection.component = 0;
-    return selection;
-  }
-  const char *colon = std::strrchr(selector, ':');
-  if (colon) selection.array = find_array(dataset, std::string(selector, colon));
-  if (!selection.array) unknown(dataset, selector);
-  const char *part = colon + 1;
-  if (std::strcmp(part, "mag") == 0) return selection;
-  const int components = selection.array->data->GetNumberOfComponents();
-  const size_t digits = std::strspn(part, "0123456789");
-  const int number = digits > 0 && digits < 9 && part[digits] == '\0' ? std::stoi(part) : components;
-  if (number >= components) {
-    fail(TETCAST_ERROR_ARGUMENT, "%s: array '%s' has no component '%s'; there are: 0 to %d and mag",
-         dataset->path.c_str(), selection.array->name.c_str(), part, components - 1);
-  }
-  selection.component = number;
+  Suffixes suffixes;
+  selection.array = selector ? find_named(dataset, selector, &suffixes) : default_array(dataset);
+  if (!selection.array)
+    unknown(dataset, selector ? selector : "");
+  if (!suffixes.component.empty())
+    selection.component = find_component(dataset, *selection.array, suffixes.component);
+  else if (selection.array->data->GetNumberOfComponents() == 1)
+    selection.component = 0;
+  selection.whole = suffixes.component.empty();
   return selection;
 }
 
@@ -87,16 +194,23 @@ static double length_of(const double *values, int count) {
   return largest * std::sqrt(sum);
 }
 
+static double scalar_of(vtkDataArray *data, vtkIdType tuple, int component) {
+  if (component != MAGNITUDE)
+    return data->GetComponent(tuple, component);
+  const int components = data->GetNumberOfComponents();
+  double few[9];
+  std::vector<double> many(components > 9 ? static_cast<size_t>(components) : 0);
+  double *values = components > 9 ? many.data() : few;
+  data->GetTuple(tuple, values);
+  return length_of(values, components);
+}
+
 // The selected scalar of every tuple of the file, as double.
 static std::vector<double> computed(const Selection &selection) {
   vtkDataArray *data = selection.array->data;
-  const int components = data->GetNumberOfComponents();
-  std::vector<double> tuple(static_cast<size_t>(components)), values(static_cast<size_t>(data->GetNumberOfTuples()));
-  for (size_t i = 0; i < values.size(); ++i) {
-    data->GetTuple(static_cast<vtkIdType>(i), tuple.data());
-    values[i] = selection.component == MAGNITUDE ? length_of(tuple.data(), components)
-                                                 : tuple[static_cast<size_t>(selection.component)];
-  }
+  std::vector<double> values(static_cast<size_t>(data->GetNumberOfTuples()));
+  for (size_t i = 0; i < values.size(); ++i)
+    values[i] = scalar_of(data, static_cast<vtkIdType>(i), selection.component);
   return values;
 }
 
@@ -203,9 +317,10 @@ static TetcastStatus make_field(const TetcastDataset *dataset, const Selection &
   return tetcast_field_create(dataset->context, &desc, field);
 }
 
-static const char *kept_name(const TetcastDataset *dataset, const Selection &selection, bool whole) {
-  std::string name = selection.array->name;
-  if (!whole) name += selection.component == MAGNITUDE ? ":mag" : ":" + std::to_string(selection.component);
+static const char *kept_name(const TetcastDataset *dataset, const Selection &selection) {
+  std::string name = selection.array->selector;
+  if (!selection.whole)
+    name += selection.component == MAGNITUDE ? ":mag" : ":" + std::to_string(selection.component);
   const std::lock_guard<std::mutex> lock(dataset->mutex);
   return dataset->selectors.insert(name).first->c_str();
 }
@@ -221,7 +336,7 @@ TetcastStatus tetcast_dataset_field(const TetcastDataset *dataset, const char *s
   TetcastStatus status = TETCAST_OK;
   const TetcastStatus thrown = fence(dataset->context, dataset->path.c_str(), [&] {
     const Selection selection = select(dataset, selector);
-    const char *kept = kept_name(dataset, selection, !selector || selection.array->name == selector);
+    const char *kept = kept_name(dataset, selection);
     status = make_field(dataset, selection, field);
     if (name && status == TETCAST_OK) *name = kept;
   });

@@ -2,7 +2,6 @@
 // The formats that volume meshes are read from: one table, which everything that lists formats takes them from.
 #include "formats.hpp"
 
-#include <cmath>
 #include <cstring>
 
 #include "common.hpp"
@@ -15,7 +14,7 @@ namespace {
 const struct {
   const char *name, *extensions, *kind;
   void (*read)(const tcv::Reading &reading, tcv::Contents *contents);
-  const char *plugin; // that reading needs; null: none
+  const char *plugin; // the program that reads it, tetcast-vtk-…; null: none
 } formats[] = {
     {"VTK XML, unstructured grid", ".vtu", "VTKFile UnstructuredGrid", tcv::read_vtu, nullptr},
     {"VTK XML, structured grid", ".vti .vtr .vts", "VTKFile ImageData", tcv::read_vti, nullptr},
@@ -39,7 +38,7 @@ const struct {
     {"CGNS", ".cgns", "HDF5 CGNS", tcv::read_cgns, "cgns"},
     {nullptr, "", "ADF", tcv::read_cgns, "cgns"},
     {"OpenFOAM", ".foam", "OpenFOAM", tcv::read_openfoam, "openfoam"},
-    {"Gmsh 2 and 4.1", ".msh", "Gmsh", tcv::read_gmsh, nullptr},
+    {"Gmsh 1, 2 and 4.1", ".msh", "Gmsh", tcv::read_gmsh, nullptr},
     {"TetGen", ".node .ele", "TetGen", tcv::read_tetgen, nullptr}, // by extension alone
 };
 
@@ -93,40 +92,8 @@ void read_part(const Reading &of, const std::string &path, const std::string &bl
   }
 }
 
-bool block_wanted(const std::string &path, const char *name) {
-  return !name || ("/" + path + "/").find("/" + std::string(name) + "/") != std::string::npos;
-}
-
-static std::string list_of(const std::vector<double> &times) {
-  char text[160];
-  const size_t last = times.size() - 1;
-  std::snprintf(text, sizeof text, "there are steps 0 to %zu, at times %.9g to %.9g", last, times[0], times[last]);
-  return text;
-}
-
 int64_t choose_step(const std::string &path, const TetcastDatasetDesc &desc, const std::vector<double> &times) {
-  const auto count = static_cast<int64_t>(times.size());
-  if (!std::isnan(desc.time)) {
-    if (count == 0) fail(TETCAST_ERROR_ARGUMENT, "%s: knows of no times: it is of one step", path.c_str());
-    int64_t nearest = 0;
-    for (int64_t i = 1; i < count; ++i) {
-      if (std::fabs(times[static_cast<size_t>(i)] - desc.time) < std::fabs(times[static_cast<size_t>(nearest)] - desc.time)) nearest = i;
-    }
-    // Decimal fractions are not exact, and some formats keep times in single precision.
-    const double found = times[static_cast<size_t>(nearest)];
-    const double scale = std::fmax(std::fabs(found), times.back() - times.front());
-    if (!(std::fabs(found - desc.time) <= 1e-6 * scale)) {
-      fail(TETCAST_ERROR_ARGUMENT, "%s: has no time %.9g; the nearest is %.9g, of step %lld; %s", path.c_str(), desc.time, found,
-           static_cast<long long>(nearest), list_of(times).c_str());
-    }
-    return nearest;
-  }
-  const int64_t steps = count ? count : 1;
-  if (desc.step >= steps || desc.step < -steps) {
-    fail(TETCAST_ERROR_ARGUMENT, "%s: has no time step %lld; %s", path.c_str(), static_cast<long long>(desc.step),
-         count ? list_of(times).c_str() : "it is of one step, 0");
-  }
-  return desc.step < 0 ? desc.step + steps : desc.step;
+  return choose_step(path, desc.step, desc.time, times);
 }
 
 } // namespace tcv

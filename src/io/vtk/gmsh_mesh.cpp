@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gmsh's meshes, MSH 2 and 4.1, as text and as bytes of either order. Views become arrays, and so do the physical groups.
+// Gmsh's meshes, MSH 1, 2 and 4.1, as text and as bytes of either order. Views become arrays, and so do the physical
+// groups.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <list>
 #include <map>
 
 #include <vtkCellArray.h>
@@ -18,25 +20,27 @@
 
 #include "common.hpp"
 #include "formats.hpp"
+#include "gmsh_order.hpp"
 #include "gmsh_scan.hpp"
 
 namespace {
 
 // Gmsh numbers the middles of edges by their ends, in rising order, and VTK goes round. Null: as Gmsh has them. What Gmsh's 14-node
 // pyramid has in the middle of its base VTK has in one of 19, of which the rest is not used.
-const signed char tetrahedron_10[] = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
-const signed char hexahedron_27[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26};
-const signed char wedge_18[] = {0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11, 15, 17, 16};
-const signed char pyramid_19[] = {0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12, 13, 0, 0, 0, 0, 0};
+const short tetrahedron_10[] = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
+const short hexahedron_27[] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  11, 13, 9,  16, 18,
+                               19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26};
+const short wedge_18[] = {0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11, 15, 17, 16};
+const short pyramid_19[] = {0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12, 13, 0, 0, 0, 0, 0};
 
 struct ElementType {
   int id, nodes;
   unsigned char type; // VTK's
   int points;         // that a cell of that type has
-  const signed char *order;
+  const short *order;
 };
 
-const ElementType element_types[] = {
+const ElementType low_types[] = {
     {1, 2, VTK_LINE, 2, nullptr},
     {2, 3, VTK_TRIANGLE, 3, nullptr},
     {3, 4, VTK_QUAD, 4, nullptr},
@@ -58,8 +62,57 @@ const ElementType element_types[] = {
     {19, 13, VTK_QUADRATIC_PYRAMID, 13, pyramid_19},
 };
 
+// Those of third order and above that have all nodes there can be; of lines and surfaces their number is what matters.
+struct HighOrders {
+  unsigned char type;
+  int first, next[10]; // order; identifiers of it and the ones above, 0 at the end
+};
+
+const HighOrders high_orders[] = {
+    {VTK_LAGRANGE_CURVE, 3, {26, 27, 28, 62, 63, 64, 65, 66}},
+    {VTK_LAGRANGE_TRIANGLE, 3, {21, 23, 25, 42, 43, 44, 45, 46}},
+    {VTK_LAGRANGE_QUADRILATERAL, 3, {36, 37, 38, 47, 48, 49, 50, 51}},
+    {VTK_LAGRANGE_TETRAHEDRON, 3, {29, 30, 31, 71, 72, 73, 74, 75}},
+    {VTK_LAGRANGE_HEXAHEDRON, 3, {92, 93, 94, 95, 96, 97, 98}},
+};
+
+int nodes_of(unsigned char type, int n) {
+  switch (type) {
+  case VTK_LAGRANGE_CURVE:
+    return n + 1;
+  case VTK_LAGRANGE_TRIANGLE:
+    return (n + 1) * (n + 2) / 2;
+  case VTK_LAGRANGE_QUADRILATERAL:
+    return (n + 1) * (n + 1);
+  case VTK_LAGRANGE_TETRAHEDRON:
+    return (n + 1) * (n + 2) * (n + 3) / 6;
+  default:
+    return (n + 1) * (n + 1) * (n + 1);
+  }
+}
+
+const std::vector<ElementType> &all_types() {
+  static std::list<std::vector<short>> orders; // that the types refer to
+  static const std::vector<ElementType> types = [] {
+    std::vector<ElementType> list(std::begin(low_types), std::end(low_types));
+    for (const HighOrders &high : high_orders) {
+      for (int i = 0; high.next[i]; ++i) {
+        const int n = high.first + i, nodes = nodes_of(high.type, n);
+        const bool tetrahedron = high.type == VTK_LAGRANGE_TETRAHEDRON;
+        if (tetrahedron || high.type == VTK_LAGRANGE_HEXAHEDRON)
+          orders.push_back(tetrahedron ? tcv::gmsh_tetrahedron(n) : tcv::gmsh_hexahedron(n));
+        else
+          orders.emplace_back();
+        list.push_back({high.next[i], nodes, high.type, nodes, orders.back().empty() ? nullptr : orders.back().data()});
+      }
+    }
+    return list;
+  }();
+  return types;
+}
+
 const ElementType *find_type(int64_t id) {
-  for (const ElementType &type : element_types) {
+  for (const ElementType &type : all_types()) {
     if (type.id == id) return &type;
   }
   return nullptr;
@@ -81,6 +134,7 @@ public:
 
 private:
   bool old() const { return version_ < 4; }
+  bool first() const { return version_ == 1; } // without $MeshFormat
   void read_format();
   void read_entities(bool parts);
   void read_nodes();
@@ -90,6 +144,8 @@ private:
   void add_element(const ElementType &type, int64_t tag, int64_t group);
   const ElementType &type_of(int64_t id) const;
   void read_section(const std::string &name, Section::Kind kind);
+  void try_section(const std::string &name, Section::Kind kind, tcv::Contents *contents);
+  std::string reason_of(const tcv::Failure &failure) const;
   void add_views(vtkUnstructuredGrid *grid, tcv::Contents *contents);
   vtkSmartPointer<vtkDoubleArray> values_of(Section *section);
   void read_corner_values(Section *section, vtkDoubleArray *array);
@@ -109,6 +165,7 @@ private:
   int64_t last_group_ = 0;
   std::vector<int64_t> list_; // the nodes of an element
   std::vector<Section> sections_;
+  std::string section_name_; // of the array that the section being read is of, for messages
 };
 
 // ── the mesh ──
@@ -118,10 +175,15 @@ void Reader::read_format() {
   const int64_t binary = in_.text_integer("0 or 1"), size = in_.text_integer("the size of numbers");
   const bool known = (version_ >= 2 && version_ < 3) || version_ == 4.1;
   if (!known) {
-    tcv::fail(TETCAST_ERROR_UNSUPPORTED, "%s: is of version %g of Gmsh's format; 2 and 4.1 are read, which gmsh -save -format msh41 makes of it",
-              reading_.path.c_str(), version_);
+    tcv::fail(
+        TETCAST_ERROR_UNSUPPORTED,
+        "%s: is of version %g of Gmsh's format; 1, 2 and 4.1 are read, which gmsh -save -format msh41 makes of it",
+        reading_.path.c_str(), version_);
   }
-  if ((binary != 0 && binary != 1) || size != 8) in_.fail("0 or 1 and numbers of 8 bytes are known, not '%lld %lld'", static_cast<long long>(binary), static_cast<long long>(size));
+  if ((binary != 0 && binary != 1) || (binary && size != 8)) { // in text the size means nothing
+    in_.fail("0 or 1 and numbers of 8 bytes are known, not '%lld %lld'", static_cast<long long>(binary),
+             static_cast<long long>(size));
+  }
   in_.line();
   if (!binary) return;
   in_.begin_bytes();
@@ -208,7 +270,9 @@ void Reader::read_nodes() {
 const ElementType &Reader::type_of(int64_t id) const {
   const ElementType *type = find_type(id);
   if (type) return *type;
-  tcv::fail(TETCAST_ERROR_UNSUPPORTED, "%s: holds elements of Gmsh's type %lld, which are not read: only those of first and second order",
+  tcv::fail(TETCAST_ERROR_UNSUPPORTED,
+            "%s: holds elements of Gmsh's type %lld, which are not read: above second order only tetrahedra and "
+            "hexahedra with all nodes are",
             reading_.path.c_str(), static_cast<long long>(id));
 }
 
@@ -253,7 +317,7 @@ void Reader::read_elements() {
         number = in_.integer("the number of an element");
         id = in_.integer("the type of an element");
       }
-      tags = in_.count(in_.integer("a number of tags"), 4, 2, "tags");
+      tags = first() ? 2 : in_.count(in_.integer("a number of tags"), 4, 2, "tags");
       const ElementType &type = type_of(id);
       for (int64_t i = 0; i < here; ++i) {
         if (in_.binary()) number = in_.integer("the number of an element");
@@ -262,6 +326,8 @@ void Reader::read_elements() {
           const int64_t tag = in_.integer("a tag");
           if (k == 0) group = tag;
         }
+        if (first() && in_.integer("a number of nodes") != type.nodes)
+          in_.fail("element %lld has not the %d nodes of its type", static_cast<long long>(number), type.nodes);
         add_element(type, number, group);
       }
       done += here;
@@ -295,7 +361,8 @@ void Reader::read_section(const std::string &name, Section::Kind kind) {
     if (in_.left() == 0) in_.fail("truncated: a name is to come");
     const std::string text = in_.line();
     const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
-    if (i == 0) section.name = quoted ? text.substr(1, text.size() - 2) : text;
+    if (i == 0)
+      section_name_ = section.name = quoted ? text.substr(1, text.size() - 2) : text;
   }
   const int64_t reals = in_.text_integer("a number of times");
   for (int64_t i = 0; i < reals; ++i) {
@@ -330,7 +397,10 @@ void Reader::read_corner_values(Section *section, vtkDoubleArray *array) {
     values.resize(static_cast<size_t>(nodes * width));
     for (double &value : values) value = section->at.number("a value");
     if (cell < 0) section->at.fail("a value is of an element that there is not");
-    const ElementType *type = std::find_if(std::begin(element_types), std::end(element_types), [&](const ElementType &one) { return one.type == types_->GetValue(cell); });
+    const vtkIdType points = ends_->GetValue(cell + 1) - ends_->GetValue(cell);
+    const auto type = std::find_if(all_types().begin(), all_types().end(), [&](const ElementType &one) {
+      return one.type == types_->GetValue(cell) && one.points == points;
+    });
     if (nodes > type->nodes) section->at.fail("an element of %d nodes has values at %lld", type->nodes, static_cast<long long>(nodes));
     for (int k = 0; k < std::min(type->nodes, type->points); ++k) {
       const int from = type->order ? type->order[k] : k;
@@ -369,6 +439,26 @@ vtkSmartPointer<vtkDoubleArray> Reader::values_of(Section *section) {
   return array;
 }
 
+// What failed without the file's name.
+std::string Reader::reason_of(const tcv::Failure &failure) const {
+  const std::string place = reading_.path + ": ";
+  return failure.text.compare(0, place.size(), place) == 0 ? failure.text.substr(place.size()) : failure.text;
+}
+
+// A section of values, which the mesh is not in need of.
+void Reader::try_section(const std::string &name, Section::Kind kind, tcv::Contents *contents) {
+  const tcv::GmshCursor begin = in_;
+  section_name_ = "$" + name;
+  try {
+    read_section(name, kind);
+  } catch (const tcv::Failure &failure) {
+    in_ = begin;
+    in_.skip_section(name); // which fails where it does not end
+    tcv::note_unread(&contents->unread, {kind == Section::OF_ELEMENTS ? TETCAST_CELL : TETCAST_POINT, section_name_},
+                     reason_of(failure));
+  }
+}
+
 // Of each view the last section that is not after the step; its first, if all are.
 void Reader::add_views(vtkUnstructuredGrid *grid, tcv::Contents *contents) {
   for (const Section &section : sections_) contents->times.push_back(section.time);
@@ -384,9 +474,21 @@ void Reader::add_views(vtkUnstructuredGrid *grid, tcv::Contents *contents) {
     else if (section.time <= now) *found = &section;
   }
   for (Section *section : wanted) {
-    const auto array = values_of(section);
-    if (section->kind == Section::OF_ELEMENTS) grid->GetCellData()->AddArray(array);
-    else grid->GetPointData()->AddArray(array);
+    const bool of_elements = section->kind == Section::OF_ELEMENTS;
+    const tcv::ArrayName name = {of_elements ? TETCAST_CELL : TETCAST_POINT, section->name};
+    if (!tcv::may_name(reading_.desc->only, name.name)) {
+      tcv::note_unread(&contents->unread, name, "");
+      continue;
+    }
+    try {
+      const auto array = values_of(section);
+      if (of_elements)
+        grid->GetCellData()->AddArray(array);
+      else
+        grid->GetPointData()->AddArray(array);
+    } catch (const tcv::Failure &failure) {
+      tcv::note_unread(&contents->unread, name, reason_of(failure));
+    }
   }
 }
 
@@ -404,15 +506,22 @@ tcv::Grid Reader::make_grid() {
 void Reader::read(tcv::Contents *contents) {
   std::string name;
   while (in_.next_section(&name)) {
+    if (version_ == 0 && name == "NOD")
+      version_ = 1;
     if (version_ == 0 && name != "MeshFormat" && name != "Comments") in_.fail("section $MeshFormat is to come first");
     if (name == "MeshFormat" && version_ == 0) read_format();
     else if (name == "Entities" || name == "PartitionedEntities") read_entities(name[0] == 'P');
-    else if (name == "Nodes") read_nodes();
-    else if (name == "Elements") read_elements();
+    else if (name == (first() ? "NOD" : "Nodes"))
+      read_nodes();
+    else if (name == (first() ? "ELM" : "Elements"))
+      read_elements();
     else {
-      if (name == "NodeData") read_section(name, Section::OF_NODES);
-      else if (name == "ElementData") read_section(name, Section::OF_ELEMENTS);
-      else if (name == "ElementNodeData") read_section(name, Section::OF_ELEMENTS_NODES);
+      if (name == "NodeData")
+        try_section(name, Section::OF_NODES, contents);
+      else if (name == "ElementData")
+        try_section(name, Section::OF_ELEMENTS, contents);
+      else if (name == "ElementNodeData")
+        try_section(name, Section::OF_ELEMENTS_NODES, contents);
       else in_.skip_section(name);
       continue;
     }
@@ -421,7 +530,9 @@ void Reader::read(tcv::Contents *contents) {
   if (types_->GetNumberOfValues() == 0) in_.fail("holds no elements; truncated?");
   const tcv::Grid grid = make_grid();
   add_views(grid, contents);
-  if (grouped_) {
+  if (grouped_ && !tcv::may_name(reading_.desc->only, "physical")) {
+    tcv::note_unread(&contents->unread, {TETCAST_CELL, "physical"}, "");
+  } else if (grouped_) {
     physical_->SetName("physical");
     grid->GetCellData()->AddArray(physical_);
   }
@@ -434,6 +545,12 @@ namespace tcv {
 
 void read_gmsh(const Reading &reading, Contents *contents) {
   const std::string bytes = file_contents(reading.path.c_str());
+  const size_t begin = bytes.find_first_not_of(" \t\r\n");
+  if (begin == std::string::npos || bytes[begin] != '$') {
+    fail(TETCAST_ERROR_DATA,
+         "%s: is not a Gmsh file: these begin with $MeshFormat or $NOD; other programs call files .msh, too",
+         reading.path.c_str());
+  }
   Reader(reading, bytes).read(contents);
 }
 

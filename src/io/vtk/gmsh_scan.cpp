@@ -44,7 +44,7 @@ bool GmshCursor::next_section(std::string *name) {
 
 void GmshCursor::end_section(const std::string &name) {
   while (at_ < end_ && blank(*at_)) ++at_;
-  const std::string wanted = "$End" + name;
+  const std::string wanted = (name == "NOD" || name == "ELM" ? "$END" : "$End") + name; // the first version shouts
   if (at_ == end_) fail("truncated: '%.40s' is to come", wanted.c_str());
   if (static_cast<size_t>(end_ - at_) < wanted.size() || std::memcmp(at_, wanted.data(), wanted.size()) != 0) {
     fail("section $%.40s is to end here, with '%.40s'", name.c_str(), wanted.c_str());

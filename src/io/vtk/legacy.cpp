@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Legacy .vtk files. VTK's own loops over their sections write beyond their memory when counts or cells are damaged;
-// its functions for single words and arrays are sound once the counts are, and do the work here.
+// Legacy .vtk files. VTK's own loops over their sections write beyond their memory when counts or cells are damaged,
+// and give up at numbers such as NaN; its functions for single words are sound, and do the work here.
 #include "common.hpp"
 #include "files.hpp"
 #include "formats.hpp"
+#include "numbers.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 
+#include <vtkBitArray.h>
 #include <vtkByteSwap.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -33,12 +36,77 @@ public:
   using vtkDataReader::DecodeString;
 };
 
+// Why an array can't be read. `behind`: the stream is where the next thing begins, as far as one can tell.
+struct Unreadable {
+  std::string reason;
+  bool behind;
+};
+
+// Types of values by the letters that their names begin with; of those that several fit the first.
+const struct {
+  const char *name;
+  int type, size; // VTK's; bytes of a value in the file, 0: eighths of one
+} value_types[] = {{"bit", VTK_BIT, 0},
+                   {"char", VTK_CHAR, 1},
+                   {"signed_char", VTK_CHAR, 1},
+                   {"unsigned_char", VTK_UNSIGNED_CHAR, 1},
+                   {"short", VTK_SHORT, 2},
+                   {"unsigned_short", VTK_UNSIGNED_SHORT, 2},
+                   {"vtkidtype", VTK_ID_TYPE, 4},
+                   {"int", VTK_INT, 4},
+                   {"unsigned_int", VTK_UNSIGNED_INT, 4},
+                   {"long", VTK_LONG, 8},
+                   {"unsigned_long", VTK_UNSIGNED_LONG, 8},
+                   {"vtktypeint64", VTK_LONG_LONG, 8},
+                   {"vtktypeuint64", VTK_UNSIGNED_LONG_LONG, 8},
+                   {"float", VTK_FLOAT, 4},
+                   {"double", VTK_DOUBLE, 8}};
+
+const char *const attribute_keywords[] = {"scalars",
+                                          "vectors",
+                                          "normals",
+                                          "tensors",
+                                          "tensors6",
+                                          "field",
+                                          "global_ids",
+                                          "pedigree_ids",
+                                          "edge_flags",
+                                          "color_scalars",
+                                          "texture_coordinates",
+                                          "lookup_table",
+                                          "point_data",
+                                          "cell_data",
+                                          "metadata"};
+
+std::string lower_case(std::string text) {
+  for (char &c : text)
+    c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+bool is_attribute_keyword(const std::string &word) {
+  const std::string lower = lower_case(word);
+  return std::any_of(std::begin(attribute_keywords), std::end(attribute_keywords),
+                     [&](const char *one) { return lower == one; });
+}
+
+void swap_bytes(void *values, int64_t count, int size) {
+  if (size == 2)
+    vtkByteSwap::Swap2BERange(values, static_cast<size_t>(count));
+  if (size == 4)
+    vtkByteSwap::Swap4BERange(values, static_cast<size_t>(count));
+  if (size == 8)
+    vtkByteSwap::Swap8BERange(values, static_cast<size_t>(count));
+}
+
 class LegacyFile {
 public:
-  explicit LegacyFile(const char *path) : path_(path), size_(tcv::file_size(path)) {
+  explicit LegacyFile(const char *path, std::vector<tcv::UnreadArray> *unread = nullptr)
+      : path_(path), size_(tcv::file_size(path)), unread_(unread) {
     if (!reader_->OpenVTKFile(path) || !reader_->ReadHeader(path) || !next() || !is("dataset") || !next()) damaged("the header");
   }
-  LegacyFile(const char *path, const char *type) : LegacyFile(path) {
+  LegacyFile(const char *path, const char *type, std::vector<tcv::UnreadArray> *unread = nullptr)
+      : LegacyFile(path, unread) {
     if (!is(type)) damaged("the header");
   }
   ~LegacyFile() { reader_->CloseVTKFile(); }
@@ -56,7 +124,9 @@ public:
       skip_metadata();
     } else if (is("points") && dataset) {
       const int64_t points = count("POINTS");
-      if (!reader_->ReadPointCoordinates(dataset, points)) damaged("POINTS");
+      vtkNew<vtkPoints> positions;
+      positions->SetData(needed("POINTS", word("POINTS"), points, 3));
+      dataset->SetPoints(positions);
     } else {
       return false;
     }
@@ -71,20 +141,21 @@ public:
       if (cells > 0 && !result->SetData(offsets, indices)) damaged(section);
       return result;
     }
-    std::vector<int> stream(static_cast<size_t>(size));
-    if (!reader_->ReadCellsLegacy(size, stream.data())) damaged(section);
+    const auto list = needed(section, "int", size, 1);
+    const int *stream = static_cast<const int *>(list->GetVoidPointer(0));
     vtkNew<vtkIdTypeArray> offsets, indices;
     offsets->SetNumberOfValues(cells + 1);
     offsets->SetValue(0, 0);
     indices->SetNumberOfValues(size < cells ? 0 : size - cells);
     int64_t at = 0, used = 0;
     for (int64_t i = 0; i < cells; ++i) {
-      const int64_t corners = at < size ? stream[static_cast<size_t>(at++)] : -1;
+      const int64_t corners = at < size ? stream[at++] : -1;
       if (corners < 0 || corners > size - at || used + corners > indices->GetNumberOfValues()) {
         tcv::fail(TETCAST_ERROR_DATA, "%s: %s: cell %lld does not fit into the %lld numbers there are", path_, section,
                   static_cast<long long>(i), static_cast<long long>(size));
       }
-      for (int64_t j = 0; j < corners; ++j) indices->SetValue(used++, stream[static_cast<size_t>(at++)]);
+      for (int64_t j = 0; j < corners; ++j)
+        indices->SetValue(used++, stream[at++]);
       offsets->SetValue(i + 1, used);
     }
     result->SetData(offsets, indices);
@@ -93,27 +164,16 @@ public:
 
   vtkSmartPointer<vtkUnsignedCharArray> cell_types() {
     const int64_t size = count("CELL_TYPES");
-    std::vector<int> types(static_cast<size_t>(size));
-    if (reader_->GetFileType() == VTK_BINARY) {
-      char line[256];
-      reader_->GetIStream()->getline(line, sizeof line); // what is left of the keyword's line
-      reader_->GetIStream()->read(reinterpret_cast<char *>(types.data()), static_cast<std::streamsize>(size * 4));
-      if (!*reader_->GetIStream()) damaged("CELL_TYPES");
-      vtkByteSwap::Swap4BERange(types.data(), types.size());
-    } else {
-      for (int &type : types) {
-        if (!reader_->Read(&type)) damaged("CELL_TYPES");
-      }
-    }
+    const auto list = needed("CELL_TYPES", "int", size, 1);
+    const int *types = static_cast<const int *>(list->GetVoidPointer(0));
     auto result = vtkSmartPointer<vtkUnsignedCharArray>::New();
     result->SetNumberOfValues(size);
     for (int64_t i = 0; i < size; ++i) {
-      const int type = types[static_cast<size_t>(i)];
-      if (type < 0 || type > 255) {
+      if (types[i] < 0 || types[i] > 255) {
         tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: there is no cell type %d", path_, static_cast<long long>(i),
-                  type);
+                  types[i]);
       }
-      result->SetValue(i, static_cast<unsigned char>(type));
+      result->SetValue(i, static_cast<unsigned char>(types[i]));
     }
     return result;
   }
@@ -131,9 +191,8 @@ public:
     }
   }
   void numbers(const char *section, double result[3]) {
-    for (int k = 0; k < 3; ++k) {
-      if (!reader_->Read(result + k)) damaged(section);
-    }
+    if (tcv::NumberReader(stream()).read(result, 3) < 3)
+      damaged(section);
   }
   vtkSmartPointer<vtkDataArray> coordinates(const char *section, int64_t wanted) {
     const int64_t values_here = count(section);
@@ -141,32 +200,24 @@ public:
       tcv::fail(TETCAST_ERROR_DATA, "%s: %s are %lld, not %lld", path_, section, static_cast<long long>(values_here),
                 static_cast<long long>(wanted));
     }
-    const AbstractArray array = values(word(section), wanted, 1);
-    vtkSmartPointer<vtkDataArray> result = vtkDataArray::SafeDownCast(array);
-    if (!result) damaged(section);
-    return result;
+    return needed(section, word(section), wanted, 1);
   }
 
-  // From the keyword POINT_DATA or CELL_DATA to the end of the file.
+  // From the keyword POINT_DATA or CELL_DATA to the end of the file. Of arrays that can't be read notes are taken.
   void attributes(vtkDataSet *dataset) {
     vtkDataSetAttributes *target = nullptr;
     int64_t have = 0;
     do {
       const bool points = is("point_data");
       if (points || is("cell_data")) {
-        const char *section = points ? "POINT_DATA" : "CELL_DATA";
+        association_ = points ? TETCAST_POINT : TETCAST_CELL;
         target = dataset->GetPointData();
         if (!points) target = dataset->GetCellData();
-        have = points ? dataset->GetNumberOfPoints() : dataset->GetNumberOfCells();
-        const int64_t values = count(section);
-        if (values != have) {
-          tcv::fail(TETCAST_ERROR_DATA, "%s: %s for %lld %s, but there are %lld", path_, section,
-                    static_cast<long long>(values), points ? "points" : "cells", static_cast<long long>(have));
-        }
+        have = count(points ? "POINT_DATA" : "CELL_DATA");
       } else if (!target) {
         damaged("the keyword", word_);
-      } else {
-        attribute(target, have);
+      } else if (!try_attribute(target, have)) {
+        return;
       }
     } while (next());
   }
@@ -177,7 +228,39 @@ public:
   }
 
 private:
-  using AbstractArray = vtkSmartPointer<vtkAbstractArray>;
+  using Array = vtkSmartPointer<vtkDataArray>;
+
+  std::istream &stream() { return *reader_->GetIStream(); }
+  bool binary() { return reader_->GetFileType() == VTK_BINARY; }
+
+  // Reads the attribute whose keyword has been read. False: nothing behind it can be read any more.
+  bool try_attribute(vtkDataSetAttributes *target, int64_t have) {
+    name_ = word_;
+    std::string reason;
+    try {
+      attribute(target, have);
+      return true;
+    } catch (const Unreadable &unreadable) {
+      reason = unreadable.reason;
+    } catch (const tcv::Failure &failure) {
+      const std::string place = std::string(path_) + ": ";
+      reason = failure.text.compare(0, place.size(), place) == 0 ? failure.text.substr(place.size()) : failure.text;
+    }
+    lose(reason);
+    stream().clear();
+    while (!binary() && next()) { // to what begins next
+      if (!is_attribute_keyword(word_))
+        continue;
+      stream().seekg(-static_cast<std::streamoff>(std::strlen(word_)), std::ios::cur);
+      return true;
+    }
+    return false;
+  }
+
+  void lose(const std::string &reason) {
+    if (unread_)
+      tcv::note_unread(unread_, {association_, name_}, reason);
+  }
 
   void attribute(vtkDataSetAttributes *target, int64_t have) {
     static const struct {
@@ -193,35 +276,56 @@ private:
     if (is("metadata")) return skip_metadata();
     if (is("lookup_table")) return skip_lookup_table();
     if (is("color_scalars")) {
-      const std::string name = word("COLOR_SCALARS");
+      begin_array(word("COLOR_SCALARS"));
       const int64_t components = count("COLOR_SCALARS");
-      add(target, name, values(reader_->GetFileType() == VTK_BINARY ? "unsigned_char" : "float", have, components), -1);
-      return;
+      return add(target, values(binary() ? "unsigned_char" : "float", have, components), -1);
     }
     if (is("texture_coordinates")) {
-      const std::string name = word("TEXTURE_COORDINATES");
+      begin_array(word("TEXTURE_COORDINATES"));
       const int64_t components = count("TEXTURE_COORDINATES");
-      add(target, name, values(word("TEXTURE_COORDINATES"), have, components), -1);
-      return;
+      return add(target, values(word("TEXTURE_COORDINATES"), have, components), -1);
     }
     for (const auto &entry : plain) {
       if (!is(entry.keyword)) continue;
-      const std::string name = word(entry.keyword);
-      add(target, name, values(word(entry.keyword), have, entry.components), entry.attribute);
-      return;
+      begin_array(word(entry.keyword));
+      return add(target, values(word(entry.keyword), have, entry.components), entry.attribute);
     }
     damaged("the keyword", word_);
   }
 
-  // SCALARS name type [components], then perhaps LOOKUP_TABLE name. (VTK demands the latter.)
+  // SCALARS name type [components], then, as a rule, LOOKUP_TABLE name.
   void read_scalars(vtkDataSetAttributes *target, int64_t have) {
     char line[256], name[256] = "", type[256] = "";
     int components = 1;
     if (!reader_->ReadLine(line) || std::sscanf(line, "%255s %255s %d", name, type, &components) < 2)
       damaged("SCALARS");
-    if (word("SCALARS") != "LOOKUP_TABLE" && !is("lookup_table")) damaged("SCALARS", name);
-    word("LOOKUP_TABLE");
-    add(target, name, values(type, have, components), vtkDataSetAttributes::SCALARS);
+    begin_array(name);
+    skip_table_name();
+    add(target, values(type, have, components), vtkDataSetAttributes::SCALARS);
+  }
+
+  // The line LOOKUP_TABLE, if it comes next. If not, the stream is where it was, at the end of the line before.
+  void skip_table_name() {
+    static const std::string keyword = "lookup_table";
+    std::istream &in = stream();
+    const std::istream::pos_type here = in.tellg();
+    std::string letters;
+    while (letters.size() < keyword.size()) {
+      const int c = in.get();
+      if (c == EOF || (letters.empty() && binary() && c == 0))
+        break;
+      if (!(letters.empty() && c <= ' '))
+        letters += static_cast<char>(c);
+      else if (binary())
+        break; // a number may be anything
+    }
+    in.clear();
+    if (lower_case(letters) == keyword) {
+      word("LOOKUP_TABLE");
+      return;
+    }
+    in.seekg(here);
+    in.seekg(-1, std::ios::cur);
   }
 
   // FIELD name count, then for each array its name, components, tuples and type. No target: only passes.
@@ -235,15 +339,24 @@ private:
         name = word("FIELD");
       }
       if (name == "NULL_ARRAY") continue;
+      begin_array(name);
       const int64_t components = count("FIELD"), tuples = count("FIELD");
-      const AbstractArray array = values(word("FIELD"), tuples, components);
-      if (target) add(target, name, array, -1);
+      try {
+        const Array array = values(word("FIELD"), tuples, components);
+        if (target && array)
+          add(target, array, -1);
+      } catch (const Unreadable &unreadable) {
+        if (!unreadable.behind)
+          throw;
+        if (target)
+          lose(unreadable.reason);
+      }
     }
   }
 
   void skip_lookup_table() {
     word("LOOKUP_TABLE");
-    values(reader_->GetFileType() == VTK_BINARY ? "unsigned_char" : "float", count("LOOKUP_TABLE"), 4);
+    values(binary() ? "unsigned_char" : "float", count("LOOKUP_TABLE"), 4);
   }
 
   void skip_metadata() { // ends with an empty line
@@ -252,31 +365,185 @@ private:
     while (reader_->ReadLine(line) && line[0] != '\0') {}
   }
 
-  vtkSmartPointer<vtkDataArray> part(const char *keyword, int64_t size) {
+  Array part(const char *keyword, int64_t size) {
     if (!next() || !is(keyword)) damaged("the list of cells");
-    const AbstractArray array = values(word(keyword), size, 1);
-    vtkSmartPointer<vtkDataArray> numbers = vtkDataArray::SafeDownCast(array);
-    if (!numbers) damaged("the list of cells");
+    const Array numbers = needed("the list of cells", word(keyword), size, 1);
     const int type = numbers->GetDataType();
     if (type != VTK_INT && type != VTK_LONG && type != VTK_LONG_LONG && type != VTK_ID_TYPE)
       damaged("the list of cells");
     return numbers;
   }
 
-  AbstractArray values(const std::string &type, int64_t tuples, int64_t components) {
-    if (components < 1 || components > 8 * size_ || tuples > 8 * size_ / components) { // bits: eight a byte
-      tcv::fail(TETCAST_ERROR_DATA, "%s: an array of %lld × %lld values is more than the file can hold", path_,
-                static_cast<long long>(tuples), static_cast<long long>(components));
+  // What the mesh is not without.
+  Array needed(const char *section, const std::string &type, int64_t tuples, int64_t components) {
+    try {
+      const Array array = values(type, tuples, components);
+      if (array)
+        return array;
+      damaged(section);
+    } catch (const Unreadable &unreadable) {
+      tcv::fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: %s can't be read: %s", path_, section,
+                unreadable.reason.c_str());
     }
-    const auto array = AbstractArray::Take(reader_->ReadArray(type.c_str(), tuples, components));
-    if (!array || array->GetNumberOfTuples() != tuples) damaged("an array of type", type.c_str());
+  }
+
+  // The values that come next; null for strings, which are passed over.
+  Array values(const std::string &type_name, int64_t tuples, int64_t components) {
+    const std::string lower = lower_case(type_name);
+    if (components < 1 || components > 8 * size_ || tuples > 8 * size_ / components) { // bits: eight a byte
+      throw Unreadable{std::to_string(tuples) + " × " + std::to_string(components) +
+                           " values are more than the file can hold",
+                       false};
+    }
+    const int64_t count = tuples * components;
+    if (lower.compare(0, 6, "string") == 0 || lower.compare(0, 11, "utf8_string") == 0)
+      return skip_strings(count), nullptr;
+    const auto *type = std::find_if(std::begin(value_types), std::end(value_types), [&](const auto &one) {
+      return lower.compare(0, std::strlen(one.name), one.name) == 0 &&
+             (std::strcmp(one.name, "char") != 0 || lower == "char");
+    });
+    if (type == std::end(value_types))
+      throw Unreadable{"there is no type '" + type_name + "'", false};
+    const int64_t left = size_ - static_cast<int64_t>(stream().tellg());
+    const int64_t bytes = type->size ? count * type->size : (count + 7) / 8;
+    if (binary() ? bytes > left : count > (left + 1) / 2)
+      throw Unreadable{"it has less data than the " + std::to_string(count) + " values it should have", false};
+    return binary() ? binary_values(type->type, type->size, tuples, components)
+                    : text_values(type->type, tuples, components);
+  }
+
+  static Array make_array(int type, int64_t tuples, int64_t components) {
+    auto array = Array::Take(vtkDataArray::CreateDataArray(type));
+    array->SetNumberOfComponents(static_cast<int>(components));
+    array->SetNumberOfTuples(tuples);
     return array;
   }
 
-  void add(vtkDataSetAttributes *target, const std::string &name, vtkAbstractArray *array, int attribute) {
+  // Behind the end of the line, the byte of most weight first.
+  Array binary_values(int type, int size, int64_t tuples, int64_t components) {
+    std::istream &in = stream();
+    for (int c = in.get(); c != '\n' && c != EOF; c = in.get()) {}
+    const int64_t count = tuples * components;
+    const bool narrow = type == VTK_ID_TYPE; // written as four bytes
+    Array array = make_array(narrow ? VTK_INT : type, tuples, components);
+    const int64_t bytes = size ? count * size : (count + 7) / 8;
+    if (bytes > 0)
+      in.read(static_cast<char *>(array->GetVoidPointer(0)), bytes);
+    if (!in)
+      throw Unreadable{"it ends early", false};
+    if (size > 1)
+      swap_bytes(array->GetVoidPointer(0), count, size);
+    if (!narrow)
+      return array;
+    auto wide = vtkSmartPointer<vtkIdTypeArray>::New();
+    wide->DeepCopy(array);
+    return wide;
+  }
+
+  template <typename T> void read_text(T *values, int64_t count, bool *overflowed) {
+    tcv::NumberReader reader(stream());
+    const int64_t have = reader.read(values, count);
+    *overflowed = reader.overflowed();
+    if (have == count)
+      return;
+    const std::string bad = reader.word();
+    if (bad.empty())
+      throw Unreadable{"it has " + std::to_string(have) + " of " + std::to_string(count) + " values", false};
+    const std::string reason =
+        "line " + std::to_string(line()) + ": '" + bad.substr(0, 40) + "' is not a number of its type";
+    std::string word = bad;
+    for (int64_t i = have + 1;; ++i) { // the rest of the values; if one is a keyword, there are fewer
+      if (is_attribute_keyword(word)) {
+        stream().seekg(-static_cast<std::streamoff>(word.size()), std::ios::cur);
+        throw Unreadable{word == bad ? "it has " + std::to_string(have) + " of " + std::to_string(count) + " values"
+                                     : reason,
+                         false};
+      }
+      if (i >= count || !(stream() >> word))
+        break;
+    }
+    throw Unreadable{reason, true};
+  }
+
+  // Single precision does not hold all that stands in files which claim it: then it is double.
+  Array text_values(int type, int64_t tuples, int64_t components) {
+    const int64_t count = tuples * components;
+    const auto start = stream().tellg();
+    bool overflowed = false;
+    if (type == VTK_BIT) {
+      Array array = make_array(VTK_UNSIGNED_CHAR, tuples, components);
+      read_text(static_cast<unsigned char *>(array->GetVoidPointer(0)), count, &overflowed);
+      auto bits = vtkSmartPointer<vtkBitArray>::New();
+      bits->DeepCopy(array);
+      return bits;
+    }
+    Array array = make_array(type, tuples, components);
+    switch (type) { vtkTemplateMacro(read_text(static_cast<VTK_TT *>(array->GetVoidPointer(0)), count, &overflowed)); }
+    if (!overflowed || type != VTK_FLOAT)
+      return array;
+    stream().clear();
+    stream().seekg(start);
+    array = make_array(VTK_DOUBLE, tuples, components);
+    read_text(static_cast<double *>(array->GetVoidPointer(0)), count, &overflowed);
+    return array;
+  }
+
+  // One a line; or each behind its length, whose first two bits say how many bytes that has.
+  void skip_strings(int64_t count) {
+    std::istream &in = stream();
+    std::string line;
+    std::getline(in, line);
+    for (int64_t i = 0; i < count && in; ++i) {
+      if (!binary()) {
+        std::getline(in, line);
+        continue;
+      }
+      const int first = in.get();
+      const int more = first >> 6 == 3 ? 0 : first >> 6 == 2 ? 1 : first >> 6 == 1 ? 3 : 7;
+      uint64_t length = static_cast<uint64_t>(first & (more == 7 ? 255 : 63));
+      for (int k = 0; k < more; ++k)
+        length = length << 8 | static_cast<uint64_t>(in.get() & 255);
+      if (first == EOF || length > static_cast<uint64_t>(size_))
+        throw Unreadable{"its strings are damaged", false};
+      in.seekg(static_cast<std::streamoff>(length), std::ios::cur);
+    }
+    if (!in)
+      throw Unreadable{"it ends early", false};
+  }
+
+  // The line that the stream has come to, from 1.
+  int64_t line() {
+    std::istream &in = stream();
+    in.clear();
+    const auto here = in.tellg();
+    in.seekg(0);
+    int64_t lines = 1;
+    std::vector<char> part(1 << 16);
+    for (int64_t left = here; left > 0;) {
+      in.read(part.data(), std::min<int64_t>(left, static_cast<int64_t>(part.size())));
+      const auto got = in.gcount();
+      if (got <= 0)
+        break;
+      lines += std::count(part.begin(), part.begin() + got, '\n');
+      left -= got;
+    }
+    in.clear();
+    in.seekg(here);
+    return lines;
+  }
+
+  void begin_array(const std::string &name) {
     std::vector<char> decoded(name.size() + 1); // %20 and the like
     reader_->DecodeString(decoded.data(), name.c_str());
-    array->SetName(decoded.data());
+    name_ = decoded.data();
+  }
+
+  void add(vtkDataSetAttributes *target, vtkDataArray *array, int attribute) {
+    if (!array)
+      return;
+    if (target->HasArray(name_.c_str()))
+      return lose("it is the second of that name");
+    array->SetName(name_.c_str());
     const int index = target->AddArray(array);
     if (attribute >= 0 && !target->GetAbstractAttribute(attribute)) target->SetActiveAttribute(index, attribute);
   }
@@ -298,8 +565,11 @@ private:
 
   const char *path_;
   int64_t size_;
+  std::vector<tcv::UnreadArray> *unread_;
   vtkNew<Reader> reader_;
   char word_[256] = "";
+  std::string name_; // of the array that is being read
+  TetcastAssociation association_ = TETCAST_POINT;
 };
 
 // Polyhedra are written as a stream: number of faces, then for each face its number of points and the points.
@@ -326,8 +596,8 @@ void check_face_streams(const char *path, vtkUnsignedCharArray *types, vtkCellAr
 // Offsets within the list; indices are checked by whoever uses them.
 void check_offsets(const char *path, vtkCellArray *cells) { tcv::check_cells(path, cells, INT64_MAX, "cell"); }
 
-vtkSmartPointer<vtkUnstructuredGrid> read_grid(const char *path) {
-  LegacyFile file(path, "unstructured_grid");
+vtkSmartPointer<vtkUnstructuredGrid> read_grid(const char *path, std::vector<tcv::UnreadArray> *unread) {
+  LegacyFile file(path, "unstructured_grid", unread);
   auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   CellArray cells;
   vtkSmartPointer<vtkUnsignedCharArray> types;
@@ -425,14 +695,16 @@ vtkSmartPointer<vtkDataSet> read_structured(LegacyFile *file) {
 namespace tcv {
 
 void read_legacy_grid(const Reading &reading, Contents *contents) {
-  const auto grid = captured(reading.context, reading.path.c_str(), [&] { return read_grid(reading.path.c_str()); });
+  const auto grid = captured(reading.context, reading.path.c_str(),
+                             [&] { return read_grid(reading.path.c_str(), &contents->unread); });
   add_grid(reading, reading.block, grid, contents);
 }
 
 void read_legacy_structured(const Reading &reading, Contents *contents) {
   const auto grid = captured(reading.context, reading.path.c_str(), [&] {
-    LegacyFile file(reading.path.c_str());
-    if (file.is("rectilinear_grid")) return read_rectilinear(&file);
+    LegacyFile file(reading.path.c_str(), &contents->unread);
+    if (file.is("rectilinear_grid"))
+      return read_rectilinear(&file);
     return file.is("structured_grid") ? read_structured(&file) : read_image(&file);
   });
   add_grid(reading, reading.block, grid, contents);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include <unistd.h>
+
 #include <vtkSmartPointer.h>
 #include <vtkXMLDataElement.h>
 #include <vtkXMLUtilities.h>
@@ -60,9 +62,17 @@ void read_group(const tcv::Reading &reading, vtkXMLDataElement *group, const std
 
 namespace tcv {
 
+// Programs on Windows write sub\a.vtu, which here may be a file's name and mostly is not.
 std::string beside(const std::string &path, const std::string &file) {
   const size_t slash = path.rfind('/');
-  return file[0] == '/' || slash == std::string::npos ? file : path.substr(0, slash + 1) + file;
+  const std::string folder = slash == std::string::npos ? "" : path.substr(0, slash + 1);
+  const auto place = [&](const std::string &name) { return name[0] == '/' ? name : folder + name; };
+  const std::string given = place(file);
+  if (file.find('\\') == std::string::npos || access(given.c_str(), F_OK) == 0)
+    return given;
+  std::string turned = file;
+  std::replace(turned.begin(), turned.end(), '\\', '/');
+  return place(turned);
 }
 
 void read_pieces(const Reading &reading, Contents *contents) {

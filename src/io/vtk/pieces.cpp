@@ -218,7 +218,8 @@ void warn_of_differences(const tcv::Reading &reading, const tcv::Differences &di
 
 namespace tcv {
 
-Grid unite(const Reading &reading, std::vector<Piece> *pieces, TetcastDatasetPieces *counts) {
+Grid unite(const Reading &reading, std::vector<Piece> *pieces, TetcastDatasetPieces *counts,
+           std::vector<UnreadArray> *unread) {
   const bool lone = pieces->size() == 1;
   for (const Piece &piece : *pieces) { // empty ones are nothing but parts of a machine that had no work
     if (piece.grid->GetNumberOfCells() > 0) check_piece(piece);
@@ -248,7 +249,7 @@ Grid unite(const Reading &reading, std::vector<Piece> *pieces, TetcastDatasetPie
   grid->SetPoints(merge_points(*pieces, reading.desc->merge_tolerance, &maps, &counts->merged_points));
   set_cells(*pieces, maps, grid->GetNumberOfPoints(), grid);
   Differences differences;
-  join_arrays(reading, *pieces, maps, grid, &differences);
+  join_arrays(reading, *pieces, maps, grid, &differences, unread);
   counts->differing_points = differences.points;
   warn_of_differences(reading, differences, counts->merged_points);
   pieces->clear();

@@ -1,165 +1,250 @@
 // SPDX-License-Identifier: Apache-2.0
+// Formats that programs of their own read (program.cpp): VTK's readers of these crash, hang and print on some damaged
+// files, and the libraries that they bring know nothing of threads. A program is started by posix_spawn(), which copies
+// nothing of this process: no lock that a thread holds, no memory. What becomes of it is told by its pipe alone: the
+// host may ignore SIGCHLD, or wait for every child there is.
 #include "plugin.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <ctime>
 
 #include <dlfcn.h>
 #include <fcntl.h>
-#include <sys/ioctl.h>
-#include <sys/resource.h>
-#include <sys/time.h>
+#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <vtkSMPTools.h>
 
 #include "common.hpp"
 #include "files.hpp"
 #include "formats.hpp"
+#include "wire.hpp"
+
+extern char **environ;
 
 namespace tcv {
 
-static std::string plugin_path(const char *name) {
-  const std::string file = std::string("libtetcast-vtk-") + name + ".so";
+// Where the programs are: in the folder that $TETCAST_LIBEXEC names, where installing puts them as seen from this
+// library, or beside it in a folder of builds.
+static std::string program_path(const char *name) {
+  const std::string program = std::string("/tetcast-vtk-") + name;
+  const char *named = std::getenv("TETCAST_LIBEXEC");
+  if (named && *named)
+    return named + program;
   Dl_info here;
-  if (!dladdr(reinterpret_cast<void *>(&tetcast_dataset_read), &here) || !here.dli_fname) return file;
-  const std::string own = here.dli_fname;
-  const size_t slash = own.rfind('/');
-  return slash == std::string::npos ? file : own.substr(0, slash + 1) + file;
+  std::string folder = ".";
+  if (dladdr(reinterpret_cast<void *>(&tetcast_dataset_read), &here) && here.dli_fname) {
+    const std::string own = here.dli_fname;
+    const size_t slash = own.rfind('/');
+    if (slash != std::string::npos)
+      folder = own.substr(0, slash);
+  }
+  const std::string installed = folder + "/" TETCAST_VTK_LIBEXEC + program,
+                    built = folder + "/../libexec/tetcast" + program;
+  return access(installed.c_str(), X_OK) != 0 && access(built.c_str(), X_OK) == 0 ? built : installed;
 }
 
-bool plugin_exists(const char *name) { return access(plugin_path(name).c_str(), R_OK) == 0; }
-
-static PluginRead load(const char *path, const char *name) {
-  const std::string library = plugin_path(name);
-  // Stays loaded: objects that it made may live on.
-  void *handle = dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL);
-  void *symbol = handle ? dlsym(handle, "tetcast_vtk_plugin_read") : nullptr;
-  if (!symbol) fail(TETCAST_ERROR_UNSUPPORTED, "%s: reading this format needs %s, which can't be loaded: %s", path, library.c_str(), dlerror());
-  return reinterpret_cast<PluginRead>(symbol);
+bool plugin_exists(const char *name) {
+  return access(program_path(name).c_str(), X_OK) == 0;
 }
 
-// No more than the machine has, beside what the process has already: a size that a damaged file claims is then refused.
-static void limit_memory() {
-#ifndef __SANITIZE_ADDRESS__
-  rlimit limit;
-  if (getrlimit(RLIMIT_DATA, &limit) != 0) return;
-  const auto memory = static_cast<rlim_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
-  if (limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur > memory) limit.rlim_cur = memory;
-  setrlimit(RLIMIT_DATA, &limit);
-#endif
+// ── a program that runs ──
+
+static bool is_alive(int process) {
+  siginfo_t state = {};
+  // A child that the system, or somebody else in this process, has buried is no child any more.
+  return waitid(P_PID, static_cast<id_t>(process), &state, WEXITED | WNOHANG | WNOWAIT) == 0 && state.si_pid == 0;
 }
 
-enum Trial { GOOD = 0, BAD = 1, OTHER_FORMAT = 2, ENDLESS = 3, STUCK = 4 };
+class Program {
+public:
+  Program(const std::string &program, const PluginRequest &request) {
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0)
+      no_process(request, errno);
+    file_ = ends[0];
+    const int error = start(program, arguments_of(request), ends[1]);
+    close(ends[1]);
+    if (error == 0)
+      return;
+    close(file_);
+    if (error != ENOENT && error != EACCES)
+      no_process(request, error);
+    fail(TETCAST_ERROR_UNSUPPORTED, "%s: reading this format needs the program %s, which can't be started: %s",
+         request.path.c_str(), program.c_str(), std::strerror(error));
+  }
+  ~Program() { // one that goes on has nobody to write to, which ends it
+    close(file_);
+    while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR)
+      continue;
+  }
+  Program(const Program &) = delete;
+  Program &operator=(const Program &) = delete;
 
-const int trials = 3, patience = 16; // a trial that waits is stopped after this many quarters of a second, and a sleeping disk is up again
+  int file() const { return file_; }
+  pid_t process() const { return process_; }
 
-// How many bytes this process has read; -1 where the system does not say.
-static double bytes_read() {
-  char text[32] = ""; // "rchar: " comes first
-  const int file = open("/proc/self/io", O_RDONLY);
-  if (file < 0) return -1;
-  const ssize_t size = read(file, text, sizeof text - 1);
-  close(file);
-  return size > 7 && std::strncmp(text, "rchar: ", 7) == 0 ? std::strtod(text + 7, nullptr) : -1;
+private:
+  [[noreturn]] static void no_process(const PluginRequest &request, int error) {
+    fail(TETCAST_ERROR_MEMORY, "%s: no process could be started to read it: %s", request.path.c_str(),
+         std::strerror(error));
+  }
+
+  // With all signals as they are by default, and none held back, whatever the host does with its own.
+  int start(const std::string &program, const std::vector<std::string> &arguments, int channel) {
+    std::vector<char *> list = {const_cast<char *>(program.c_str())};
+    for (const std::string &one : arguments)
+      list.push_back(const_cast<char *>(one.c_str()));
+    list.push_back(nullptr);
+    posix_spawn_file_actions_t files;
+    posix_spawnattr_t attributes;
+    if (posix_spawn_file_actions_init(&files) != 0)
+      return ENOMEM;
+    if (posix_spawnattr_init(&attributes) != 0) {
+      posix_spawn_file_actions_destroy(&files);
+      return ENOMEM;
+    }
+    sigset_t none, all;
+    sigemptyset(&none);
+    sigfillset(&all);
+    posix_spawnattr_setsigmask(&attributes, &none);
+    posix_spawnattr_setsigdefault(&attributes, &all);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+    int error = posix_spawn_file_actions_adddup2(&files, channel, 3);
+    if (error == 0)
+      error = posix_spawn(&process_, program.c_str(), &files, &attributes, list.data(), environ);
+    posix_spawn_file_actions_destroy(&files);
+    posix_spawnattr_destroy(&attributes);
+    return error;
+  }
+
+  int file_ = -1;
+  pid_t process_ = -1;
+};
+
+// ── what it tells ──
+
+struct Trial {
+  ArrayName array;
+  bool of_array = false; // what was tried last was this one
+};
+
+static TetcastAssociation association_of(int64_t value) {
+  return value == TETCAST_CELL ? TETCAST_CELL : TETCAST_POINT;
 }
 
-// VTK's readers look for words that a damaged file does not have, without end: they compute and read nothing any more. What a whole file
-// takes is far less than this. And a process that neither computes nor reads waits for a lock that some thread of the host's held when it
-// began, a thread that it has not. Called by the timer.
-static void stop_if_endless(int) {
-  static double bytes_before, seconds_before;
-  static int waits;
-  const double bytes = bytes_read(), seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-  if (bytes >= 0 && seconds > 3 + 4e-6 * bytes) _exit(ENDLESS);
-  waits = bytes - bytes_before < 64 && seconds - seconds_before < 1e-3 ? waits + 1 : 0; // less is the timer's own
-  if (waits == patience) _exit(STUCK);
-  bytes_before = bytes;
-  seconds_before = seconds;
+static void take_unread(WireReader *wire, bool lost, Contents *contents) {
+  const TetcastAssociation association = association_of(wire->number());
+  const std::string name = wire->text();
+  note_unread(&contents->unread, {association, name}, lost ? wire->text() : "");
 }
 
-// `output` is a pipe, for what is printed: a library must not, and what makes a reader do so is damaged.
-[[noreturn]] static void try_here(PluginRead read, const PluginRequest &request, const int output[2]) {
-  // A crash ends this process, whatever handlers the host has: they would go on with its work in here.
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
-  dup2(output[1], STDOUT_FILENO);
-  dup2(output[1], STDERR_FILENO);
-  std::signal(SIGALRM, stop_if_endless);
-  const itimerval interval = {{0, 250000}, {0, 250000}};
-  setitimer(ITIMER_REAL, &interval, nullptr);
-  limit_memory();
-  vtkSMPTools::SetBackend("Sequential"); // threads that the host has started for TBB are not in this process
+static void take_block(const Reading &reading, WireReader *wire, WireRecord record, Contents *contents) {
+  const std::string block = wire->text();
+  if (record == WIRE_GRID)
+    return add_grid(reading, block, wire->grid(), contents);
+  list_block(block, contents);
+  contents->surfaces += record == WIRE_FLAT;
+}
+
+// True when all has been told; false when nothing more will be, as `trial` ended the program. Fails on what is wrong
+// with the file.
+static bool listen(const Reading &reading, const char *format, WireReader *wire, Contents *contents, Trial *trial) {
+  const char *path = reading.path.c_str();
   try {
-    PluginResult result;
-    read(&request, &result);
-    int printed = 0;
-    std::fflush(stdout);
-    ioctl(output[0], FIONREAD, &printed);
-    _exit(!result.object ? OTHER_FORMAT : printed > 0 ? BAD : GOOD);
-  } catch (const Failure &) {
-    _exit(GOOD); // this library's own, as for a step there is not: will be heard of again
-  } catch (...) {
-    _exit(BAD);
+    for (;;) {
+      const WireRecord record = wire->record();
+      switch (record) {
+      case WIRE_TRY: {
+        const std::string name = wire->text();
+        const int64_t association = wire->number();
+        *trial = {{association_of(association), name}, association >= 0};
+        break;
+      }
+      case WIRE_KNOWN:
+      case WIRE_LOST:
+        take_unread(wire, record == WIRE_LOST, contents);
+        break;
+      case WIRE_TIMES:
+        contents->times.clear();
+        for (int64_t count = wire->number(); count > 0; --count)
+          contents->times.push_back(wire->real());
+        contents->step = wire->number();
+        break;
+      case WIRE_WARN:
+        tetcast_context_message(reading.context, TETCAST_SEVERITY_WARNING, "%s: %s", path, wire->text().c_str());
+        break;
+      case WIRE_BLOCK:
+      case WIRE_FLAT:
+      case WIRE_GRID:
+        take_block(reading, wire, record, contents);
+        break;
+      case WIRE_END:
+        return true;
+      case WIRE_FAILED: {
+        const auto status = static_cast<TetcastStatus>(wire->number());
+        throw Failure{status, wire->text()};
+      }
+      case WIRE_OTHER:
+        fail(TETCAST_ERROR_UNSUPPORTED, "%s: is not a file of format %s, or damaged", path, format);
+      case WIRE_ENDLESS:
+        return false;
+      default:
+        throw WireBroken();
+      }
+    }
+  } catch (const WireBroken &) {
+    return false;
   }
 }
 
-// What became of a child process that reads the file: a status as of waitpid().
-static int trial(PluginRead read, const PluginRequest &request) {
-  const char *path = request.path.c_str();
-  int output[2];
-  if (pipe2(output, O_NONBLOCK | O_CLOEXEC) != 0) fail(TETCAST_ERROR_MEMORY, "%s: no process could be started to try reading it", path);
-  std::fflush(stdout); // the child would print what is left in there
-  const pid_t child = fork();
-  if (child == 0) try_here(read, request, output);
-  close(output[0]);
-  close(output[1]);
-  if (child < 0) fail(TETCAST_ERROR_MEMORY, "%s: no process could be started to try reading it", path);
-  int status;
-  while (waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) fail(TETCAST_ERROR_IO, "%s: the process that tried reading it is lost", path);
-  }
-  return status;
-}
-
-// VTK's readers crash on some damaged files, and print about others: a child process tries first. One that is stuck is followed by another,
-// as threads hold locks for moments only.
-static void try_in_child(PluginRead read, const PluginRequest &request, const char *format) {
-  const char *path = request.path.c_str();
-  const Capture capture; // what is said through VTK is none of the printing
-  int result = STUCK;
-  for (int i = 0; i < trials && result == STUCK; ++i) {
-    const int status = trial(read, request);
-    result = WIFEXITED(status) ? WEXITSTATUS(status) : BAD;
-  }
-  switch (result) {
-  case GOOD: return;
-  case OTHER_FORMAT: fail(TETCAST_ERROR_UNSUPPORTED, "%s: is not a file of format %s, or damaged", path, format);
-  case ENDLESS: fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: VTK's reader of %s files does not come to an end", path, format);
-  case STUCK: fail(TETCAST_ERROR_IO, "%s: the process that tries reading it waits, for its disk or for locks that threads of this program hold", path);
-  default: fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: VTK's reader of %s files fails on it", path, format);
-  }
-}
-
-// Reads by plugin `name`.
+// Reads by program `name`. Of a program that is ended by what it tries, another goes on: each array on its own first,
+// then without those that are at fault.
 static void read_plugin(const Reading &reading, const char *name, const char *format, Contents *contents) {
   const char *path = reading.path.c_str();
-  const PluginRead read = load(path, name);
-  const PluginRequest request = {reading.path, reading.desc->only, [&](const std::vector<double> &times) { return choose_step(reading.path, *reading.desc, times); }};
-  try_in_child(read, request, format);
-  const auto result = captured(reading.context, path, [&] {
-    PluginResult all;
-    read(&request, &all);
-    return all;
-  });
-  if (!result.object) fail(TETCAST_ERROR_DATA, "%s: changed while it was read", path);
-  add_object(reading, result.object, contents);
-  contents->times = result.times;
-  contents->step = result.step;
+  const std::string program = program_path(name);
+  PluginRequest request = {reading.path,
+                           reading.block,
+                           reading.desc->block,
+                           reading.desc->only,
+                           reading.desc->step,
+                           reading.desc->time,
+                           !reading.desc->no_displacement,
+                           false,
+                           {}};
+  const int patience = 6;
+  for (int i = 0; i < patience; ++i) {
+    Contents found;
+    Trial trial;
+    bool whole = false;
+    {
+      const Program running(program, request);
+      WireReader wire(running.file(), is_alive, running.process());
+      whole = captured(reading.context, path, [&] { return listen(reading, format, &wire, &found, &trial); });
+    }
+    if (whole) {
+      std::move(found.pieces.begin(), found.pieces.end(), std::back_inserter(contents->pieces));
+      for (const std::string &block : found.blocks)
+        list_block(block, contents);
+      for (const UnreadArray &one : found.unread)
+        note_unread(&contents->unread, one.array, one.reason);
+      for (const ArrayName &array : request.without)
+        note_unread(&contents->unread, array, std::string("VTK's reader of ") + format + " files ends on it");
+      contents->surfaces += found.surfaces;
+      contents->times = found.times;
+      contents->step = found.step;
+      return;
+    }
+    if (request.apart && !trial.of_array)
+      break;
+    request.apart = true;
+    if (trial.of_array)
+      request.without.push_back(trial.array);
+  }
+  fail(TETCAST_ERROR_DATA,
+       "%s: truncated or damaged: VTK's reader of %s files crashes on it or does not come to an end", path, format);
 }
 
 void read_exodus(const Reading &reading, Contents *contents) {

@@ -1,38 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formats whose readers bring libraries of their own: each is in a plugin libtetcast-vtk-NAME.so beside this library, which is loaded
-// when such a file is read.
+// Formats that programs of their own read: what the library asks them for.
 #ifndef TETCAST_VTK_PLUGIN_HPP
 #define TETCAST_VTK_PLUGIN_HPP
 
+#include <cmath>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
-#include <vtkDataObject.h>
-#include <vtkSmartPointer.h>
+#include "arrays.hpp"
 
 namespace tcv {
 
 struct PluginRequest {
   std::string path;
-  const char *only; // of the description
-  std::function<int64_t(const std::vector<double> &times)> choose; // the step to be read; throws if there is no such
-};
-
-struct PluginResult {
-  vtkSmartPointer<vtkDataObject> object; // null: not of this format
-  std::vector<double> times;
+  std::string place;                            // the block that the file is in, "" if it is none
+  const char *block = nullptr, *only = nullptr; // of the description
   int64_t step = 0;
+  double time = std::nan("");
+  bool displace = true;
+  bool apart = false;             // arrays are tried one by one: there were crashes
+  std::vector<ArrayName> without; // arrays that are not to be tried again
 };
 
-using PluginRead = void (*)(const PluginRequest *request, PluginResult *result);
+// As the arguments of the program, and back.
+std::vector<std::string> arguments_of(const PluginRequest &request);
+PluginRequest request_of(char **arguments);
+
+// Which of the steps is asked for; fails if there is no such.
+int64_t choose_step(const std::string &path, int64_t step, double time, const std::vector<double> &times);
 
 bool plugin_exists(const char *name);
 
 } // namespace tcv
-
-// What every plugin has.
-extern "C" __attribute__((visibility("default"))) void tetcast_vtk_plugin_read(const tcv::PluginRequest *request, tcv::PluginResult *result);
 
 #endif

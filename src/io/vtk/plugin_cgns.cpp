@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <vtkCGNSReader.h>
-#include <vtkNew.h>
 
-#include "plugin_read.hpp"
+#include "source.hpp"
 
-void tetcast_vtk_plugin_read(const tcv::PluginRequest *request, tcv::PluginResult *result) {
-  vtkNew<vtkCGNSReader> reader;
-  if (!reader->CanReadFile(request->path.c_str())) return;
-  reader->SetFileName(request->path.c_str());
-  reader->UpdateInformation();
-  reader->EnableAllBases();
-  reader->EnableAllPointArrays();
-  reader->EnableAllCellArrays();
-  reader->DoublePrecisionMeshOn();
-  tcv::read_step(reader, *request, result);
+namespace {
+
+class Cgns : public tcv::VtkSource<vtkCGNSReader> {
+public:
+  bool open(const std::string &path) override {
+    if (!reader_->CanReadFile(path.c_str()))
+      return false;
+    reader_->SetFileName(path.c_str());
+    reader_->UpdateInformation();
+    reader_->EnableAllBases();
+    reader_->DoublePrecisionMeshOn();
+    return true;
+  }
+};
+
+} // namespace
+
+std::unique_ptr<tcv::Source> tcv::make_source(const SourceOptions &) {
+  return std::make_unique<Cgns>();
 }

@@ -1,14 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // EnSight 6 and Gold, binary and ASCII.
 #include <vtkGenericEnSightReader.h>
-#include <vtkNew.h>
 
-#include "plugin_read.hpp"
+#include "source.hpp"
 
-void tetcast_vtk_plugin_read(const tcv::PluginRequest *request, tcv::PluginResult *result) {
-  vtkNew<vtkGenericEnSightReader> reader;
-  const size_t slash = request->path.rfind('/'); // the reader looks for the other files in the folder it is given
-  if (slash != std::string::npos) reader->SetFilePath(request->path.substr(0, slash + 1).c_str());
-  reader->SetCaseFileName(request->path.substr(slash == std::string::npos ? 0 : slash + 1).c_str());
-  tcv::read_step(reader, *request, result);
+namespace {
+
+class EnSight : public tcv::VtkSource<vtkGenericEnSightReader> {
+public:
+  bool open(const std::string &path) override {
+    const size_t slash = path.rfind('/'); // the reader looks for the other files in the folder it is given
+    if (slash != std::string::npos)
+      reader_->SetFilePath(path.substr(0, slash + 1).c_str());
+    reader_->SetCaseFileName(path.substr(slash == std::string::npos ? 0 : slash + 1).c_str());
+    return true;
+  }
+};
+
+} // namespace
+
+std::unique_ptr<tcv::Source> tcv::make_source(const SourceOptions &) {
+  return std::make_unique<EnSight>();
 }

@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // OpenFOAM cases: the path is that of an empty file in the case's folder, as ParaView has it.
-#include <vtkNew.h>
 #include <vtkOpenFOAMReader.h>
 
-#include "plugin_read.hpp"
+#include "source.hpp"
 
-void tetcast_vtk_plugin_read(const tcv::PluginRequest *request, tcv::PluginResult *result) {
-  vtkNew<vtkOpenFOAMReader> reader;
-  reader->SetFileName(request->path.c_str());
-  reader->SetCreateCellToPoint(false); // fields are as the file has them
-  reader->SetDecomposePolyhedra(false);
-  tcv::read_step(reader, *request, result);
+namespace {
+
+class OpenFoam : public tcv::VtkSource<vtkOpenFOAMReader> {
+public:
+  bool open(const std::string &path) override {
+    reader_->SetFileName(path.c_str());
+    reader_->SetCreateCellToPoint(false); // fields are as the file has them
+    reader_->SetDecomposePolyhedra(false);
+    return true;
+  }
+};
+
+} // namespace
+
+std::unique_ptr<tcv::Source> tcv::make_source(const SourceOptions &) {
+  return std::make_unique<OpenFoam>();
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // TetGen's meshes: points in .node, tetrahedra in .ele, numbered from 0 or 1. Attributes and markers become arrays.
+#include <algorithm>
+
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
@@ -57,11 +59,40 @@ Arrays make_arrays(const Header &header, const std::string &name, const char *ma
   return arrays;
 }
 
-void read_values(tcv::Scanner *scanner, int64_t i, const Arrays &arrays) {
-  for (const auto &array : arrays) array->SetValue(i, scanner->number("a value"));
+// An array with something that is no number is noted, and left out in the end.
+void read_values(tcv::Scanner *scanner, int64_t i, TetcastAssociation association, const Arrays &arrays,
+                 std::vector<tcv::UnreadArray> *unread) {
+  for (const auto &array : arrays) {
+    const std::string word = scanner->word();
+    double value;
+    if (tcv::parse_number(word.data(), word.data() + word.size(), &value)) {
+      array->SetValue(i, value);
+      continue;
+    }
+    tcv::note_unread(unread, {association, array->GetName()},
+                     "line " + std::to_string(scanner->line()) + ": a value expected, not '" + word.substr(0, 40) +
+                         "'");
+  }
 }
 
-int64_t read_nodes(const std::string &path, vtkUnstructuredGrid *grid) {
+// Those that are asked for and could be read.
+void add_arrays(const Arrays &arrays, TetcastAssociation association, const char *only, vtkDataSetAttributes *target,
+                std::vector<tcv::UnreadArray> *unread) {
+  for (const auto &array : arrays) {
+    const tcv::ArrayName name = {association, array->GetName()};
+    const bool bad =
+        std::any_of(unread->begin(), unread->end(), [&](const tcv::UnreadArray &one) { return one.array == name; });
+    if (bad)
+      continue;
+    if (tcv::may_name(only, name.name))
+      target->AddArray(array);
+    else
+      tcv::note_unread(unread, name, "");
+  }
+}
+
+int64_t read_nodes(const std::string &path, const char *only, vtkUnstructuredGrid *grid,
+                   std::vector<tcv::UnreadArray> *unread) {
   const std::string text = tcv::file_contents(path.c_str());
   tcv::Scanner scanner(path.c_str(), text);
   const auto size = static_cast<int64_t>(text.size());
@@ -76,16 +107,17 @@ int64_t read_nodes(const std::string &path, vtkUnstructuredGrid *grid) {
   for (int64_t i = 0; i < header.count; ++i) {
     begin_row(&scanner, i, header.count, "points", &base);
     for (int k = 0; k < 3; ++k) positions->SetValue(3 * i + k, scanner.number("a coordinate"));
-    read_values(&scanner, i, arrays);
+    read_values(&scanner, i, TETCAST_POINT, arrays, unread);
   }
   vtkNew<vtkPoints> points;
   points->SetData(positions);
   grid->SetPoints(points);
-  for (const auto &array : arrays) grid->GetPointData()->AddArray(array);
+  add_arrays(arrays, TETCAST_POINT, only, grid->GetPointData(), unread);
   return base;
 }
 
-void read_elements(const std::string &path, int64_t base, vtkUnstructuredGrid *grid) {
+void read_elements(const std::string &path, int64_t base, const char *only, vtkUnstructuredGrid *grid,
+                   std::vector<tcv::UnreadArray> *unread) {
   const std::string text = tcv::file_contents(path.c_str());
   tcv::Scanner scanner(path.c_str(), text);
   const auto size = static_cast<int64_t>(text.size());
@@ -106,7 +138,7 @@ void read_elements(const std::string &path, int64_t base, vtkUnstructuredGrid *g
   for (int64_t i = 0; i < header.count; ++i) {
     begin_row(&scanner, i, header.count, "tetrahedra", &first);
     for (int k = 0; k < 4; ++k) indices->SetValue(4 * i + k, scanner.integer("the number of a point") - base);
-    read_values(&scanner, i, arrays);
+    read_values(&scanner, i, TETCAST_CELL, arrays, unread);
     ends->SetValue(i + 1, 4 * (i + 1));
   }
   vtkNew<vtkCellArray> cells;
@@ -115,7 +147,7 @@ void read_elements(const std::string &path, int64_t base, vtkUnstructuredGrid *g
   types->SetNumberOfValues(header.count);
   types->FillValue(VTK_TETRA);
   grid->SetCells(types, cells);
-  for (const auto &array : arrays) grid->GetCellData()->AddArray(array);
+  add_arrays(arrays, TETCAST_CELL, only, grid->GetCellData(), unread);
 }
 
 } // namespace
@@ -125,8 +157,8 @@ namespace tcv {
 void read_tetgen(const Reading &reading, Contents *contents) {
   const std::string stem = reading.path.substr(0, reading.path.rfind('.'));
   auto grid = Grid::New();
-  const int64_t base = read_nodes(stem + ".node", grid);
-  read_elements(stem + ".ele", base, grid);
+  const int64_t base = read_nodes(stem + ".node", reading.desc->only, grid, &contents->unread);
+  read_elements(stem + ".ele", base, reading.desc->only, grid, &contents->unread);
   add_grid(reading, reading.block, grid, contents);
 }
 
