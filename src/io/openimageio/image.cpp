@@ -382,7 +382,7 @@ void write_picture(TetcastContext *context, const char *path, const Pixels &pixe
       fail(context, TETCAST_ERROR_ARGUMENT, path,
            std::string("the format cannot hold pixels of type ") + type_name(desc.pixel_type));
     }
-    if (publish && !output->supports("alpha") && (is_float(type) || !opaque))
+    if (!output->supports("alpha") && (is_float(type) || !opaque))
       tetcast_context_message(context, TETCAST_SEVERITY_WARNING,
                               "image '%s': the format has no alpha; the picture lies over black", path);
     done = write_rows(*output, pixels, desc.background);
