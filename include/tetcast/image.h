@@ -14,8 +14,8 @@ extern "C" {
 #endif
 
 typedef enum TetcastPixelType {
-  TETCAST_PIXEL_DEFAULT = 0, /* what suits the format: PNG, JPEG uint8; EXR half, or float where the largest colour is beyond 65504 or
-                              * below 2^-14; TIFF float; else the format's own */
+  TETCAST_PIXEL_DEFAULT = 0, /* what suits the format: PNG, JPEG uint8; EXR half, or float where the largest colour is
+                              * beyond 65504 or below 2^-14; TIFF float; else the format's own */
   TETCAST_PIXEL_UINT8,
   TETCAST_PIXEL_UINT16,
   TETCAST_PIXEL_HALF,

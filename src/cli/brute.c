@@ -63,7 +63,8 @@ static bool clip(const Cell *cell, const long double direction[3], BruteSpan *sp
   return true;
 }
 
-/* Whether all corners lie to one side of the ray, further away than `margin`, as seen along either of two directions across it. */
+/* Whether all corners lie to one side of the ray, further away than `margin`, as seen along either of two directions
+ * across it. */
 static bool beside(const Cell *cell, long double across[2][3], long double margin) {
   for (int a = 0; a < 2; a++) {
     int positive = 0, negative = 0;
@@ -135,8 +136,8 @@ static void put_in_order(BruteSpans *list) {
   list->count = kept;
 }
 
-/* How far the rays beside the ray are from it: several roundings in double of all lengths that a renderer reckons with. Its rays are no
- * more exact than that. */
+/* How far the rays beside the ray are from it: several roundings in double of all lengths that a renderer reckons with.
+ * Its rays are no more exact than that. */
 static long double offset_of(const TetcastMesh *mesh, const ReferenceRay *line) {
   double bounds[6];
   tetcast_mesh_bounds(mesh, bounds);
@@ -149,7 +150,8 @@ static long double offset_of(const TetcastMesh *mesh, const ReferenceRay *line) 
 }
 
 /* Casts the ray and those beside it against one cell. */
-static void cast(BruteRay *ray, const Cell *cell, bool of_cells, const long double direction[3], long double offsets[BRUTE_RAYS][3]) {
+static void cast(BruteRay *ray, const Cell *cell, bool of_cells, const long double direction[3],
+                 long double offsets[BRUTE_RAYS][3]) {
   for (int r = 0; r < BRUTE_RAYS; r++) {
     Cell moved = *cell;
     for (int i = 0; i < 4; i++)
@@ -166,8 +168,8 @@ static void cast(BruteRay *ray, const Cell *cell, bool of_cells, const long doub
   }
 }
 
-void brute_trace(BruteRay *ray, const TetcastMesh *mesh, const TetcastField *field, const TetcastCamera *camera, int64_t width,
-                 int64_t height, int64_t pixel) {
+void brute_trace(BruteRay *ray, const TetcastMesh *mesh, const TetcastField *field, const TetcastCamera *camera,
+                 int64_t width, int64_t height, int64_t pixel) {
   const ReferenceRay line = reference_ray(camera, width, height, pixel % width, pixel / width);
   const bool of_cells = tetcast_field_association(field) == TETCAST_CELL;
   const int64_t count = tetcast_mesh_tetrahedron_count(mesh);
@@ -312,8 +314,9 @@ static void shade(const BruteSpans *list, const TetcastTransferFunction *transfe
   rgba[3] = -expm1l(-light.depth);
 }
 
-/* Where light changes smoothly, or with a kink, from one side of the ray to the other, the ray itself has no more than what those beside it
- * have, by as much as they differ. A cell that was counted twice or not at all shows by going beyond. */
+/* Where light changes smoothly, or with a kink, from one side of the ray to the other, the ray itself has no more than
+ * what those beside it have, by as much as they differ. A cell that was counted twice or not at all shows by going
+ * beyond. */
 void brute_shade(const BruteRay *ray, const TetcastTransferFunction *transfer_function, BruteLight *light) {
   long double own[4];
   shade(&ray->cast[0], transfer_function, own);

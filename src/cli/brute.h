@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A slow ray caster to check the library by: in extended precision, every ray against every tetrahedron. It knows when it doesn't know: where a
- * ray lies in a face of two cells, or so near that rounding decides, both cells or neither may take it for theirs. So each ray is cast once as it
- * is and four times beside, by so little as a renderer in double precision may be off. Where those four agree, that is the light; where they
- * differ, as along a silhouette or between cells of different values, no answer is right. */
+/* A slow ray caster to check the library by: in extended precision, every ray against every tetrahedron. It knows when
+ * it doesn't know: where a ray lies in a face of two cells, or so near that rounding decides, both cells or neither may
+ * take it for theirs. So each ray is cast once as it is and four times beside, by so little as a renderer in double
+ * precision may be off. Where those four agree, that is the light; where they differ, as along a silhouette or between
+ * cells of different values, no answer is right. */
 #ifndef TETCAST_CLI_BRUTE_H
 #define TETCAST_CLI_BRUTE_H
 
@@ -29,13 +30,14 @@ typedef struct BruteRay {
 } BruteRay;
 
 /* Finds the spans of the ray through the middle of a pixel. */
-void brute_trace(BruteRay *ray, const TetcastMesh *mesh, const TetcastField *field, const TetcastCamera *camera, int64_t width,
-                 int64_t height, int64_t pixel);
+void brute_trace(BruteRay *ray, const TetcastMesh *mesh, const TetcastField *field, const TetcastCamera *camera,
+                 int64_t width, int64_t height, int64_t pixel);
 
 /* What is known of a ray's premultiplied colour and opacity: each lies between two numbers. */
 typedef struct BruteLight {
   long double low[4], high[4];
-  bool beside;        /* the ray itself does not go with those beside it, which state the bounds; else it does, and both are its light */
+  bool beside; /* the ray itself does not go with those beside it, which state the bounds; else it does, and both are
+                  its light */
   long double spread; /* how much those beside it differ */
 } BruteLight;
 

@@ -197,19 +197,21 @@ void cli_guess(CliGuess *guess, const char *name) {
     return;
   const size_t distance = distance_between(guess->word, name), near = (length > other ? length : other) / 3;
   /* Words of a few letters are near to everything: they have to begin alike. */
-  const bool like = distance <= near || (distance == 1 && tolower((unsigned char)*guess->word) == tolower((unsigned char)*name));
+  const bool like =
+      distance <= near || (distance == 1 && tolower((unsigned char)*guess->word) == tolower((unsigned char)*name));
   if (like && (!guess->best || distance < guess->distance)) {
     guess->best = name;
     guess->distance = distance;
   }
 }
 
-char *cli_guess_text(const CliGuess *guess, const char *before) {
-  return guess->best ? cli_print("; did you mean %s'%s'?", before, guess->best) : cli_duplicate("");
+char *cli_guess_text(const CliGuess *guess) {
+  return guess->best ? cli_print("; did you mean '%s'?", guess->best) : cli_duplicate("");
 }
 
 /* `name` without dashes, as a message about it. */
-static int unknown_option(const char *command, const char *shown, int length, const char *name, const struct option *words) {
+static int unknown_option(const char *command, const char *shown, int length, const char *name,
+                          const struct option *words) {
   char *word = cli_print("%.*s", (int)strcspn(name, "="), name);
   CliGuess guess = {.word = word};
   for (; words->name; words++)

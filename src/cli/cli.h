@@ -60,8 +60,8 @@ typedef struct CliGuess {
 
 void cli_guess(CliGuess *guess, const char *name);
 
-/* "; did you mean BEFORE'best'?", or "" if none is near; for free(). */
-char *cli_guess_text(const CliGuess *guess, const char *before);
+/* "; did you mean 'best'?", or "" if none is near; for free(). */
+char *cli_guess_text(const CliGuess *guess);
 
 /* A context whose messages go to stderr as above, or NULL after a message. threads 0: all processors. */
 TetcastContext *cli_context_create(int threads);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* tetcast completion: the scripts by which bash, zsh and fish complete a command line, made from the tables of options. */
+/* tetcast completion: the scripts by which bash, zsh and fish complete a command line, made from the tables of options.
+ */
 #include "completion.h"
 
 #include <stdio.h>
@@ -17,8 +18,8 @@ static const struct {
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 /* The first words of a command line, and what two of them go on with. */
-static const char first[] = "render converge info mesh completion help", helped[] = "render converge info mesh completion",
-                  shells[] = "bash zsh fish";
+static const char first[] = "render converge info mesh completion help",
+                  helped[] = "render converge info mesh completion", shells[] = "bash zsh fish";
 
 /* "a b c"; `colon` stands for one. */
 static void put_words(const char *const *words, const char *colon) {
@@ -60,18 +61,19 @@ static void put_bash_command(int number) {
 }
 
 static void put_bash(void) {
-  printf("# tetcast: completion for bash, made by \"tetcast completion bash\"\n"
-         "_tetcast() {\n"
-         "  local command=${COMP_WORDS[1]} current=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} words=\n"
-         "  COMPREPLY=()\n"
-         "  [[ $current != '=' ]] || current=\n"
-         "  [[ $before != '=' ]] || before=${COMP_WORDS[COMP_CWORD-2]}\n"
-         "  if [[ $COMP_CWORD == 1 ]]; then command= before=tetcast; fi\n"
-         "  case \"$command $before\" in\n"
-         "    ' tetcast') words='%s --help --version' ;;\n"
-         "    'help '*) words='%s' ;;\n"
-         "    'completion '*) words='%s' ;;\n",
-         first, helped, shells);
+  printf(
+      "# tetcast: completion for bash, made by \"tetcast completion bash\"\n"
+      "_tetcast() {\n"
+      "  local command=${COMP_WORDS[1]} current=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} words=\n"
+      "  COMPREPLY=()\n"
+      "  [[ $current != '=' ]] || current=\n"
+      "  [[ $before != '=' ]] || before=${COMP_WORDS[COMP_CWORD-2]}\n"
+      "  if [[ $COMP_CWORD == 1 ]]; then command= before=tetcast; fi\n"
+      "  case \"$command $before\" in\n"
+      "    ' tetcast') words='%s --help --version' ;;\n"
+      "    'help '*) words='%s' ;;\n"
+      "    'completion '*) words='%s' ;;\n",
+      first, helped, shells);
   for (int i = 0; i < COMMANDS; i++)
     put_bash_command(i);
   fputs("  esac\n"

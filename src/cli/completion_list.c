@@ -11,7 +11,9 @@ int completion_of_words(const struct option *words, CompletionOption list[COMPLE
   for (; words->name && count < COMPLETION_OPTIONS; words++) {
     const bool output = !strcmp(words->name, "output");
     list[count++] = (CompletionOption){.name = words->name,
-                                       .letter = output ? 'o' : strcmp(words->name, "help") ? '\0' : 'h',
+                                       .letter = output                        ? 'o'
+                                                 : strcmp(words->name, "help") ? '\0'
+                                                                               : 'h',
                                        .kind = output           ? COMPLETION_PATH
                                                : words->has_arg ? COMPLETION_VALUE
                                                                 : COMPLETION_FLAG};

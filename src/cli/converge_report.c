@@ -115,16 +115,19 @@ static void put_run(FILE *file, const Converge *converge) {
 static void put_undecided(FILE *file, const Converge *converge) {
   if (converge->rays_beside + converge->rays_replaced + converge->rays_undecided == 0)
     return;
-  fputs("A ray that runs in a face of two cells, or within a few roundings of one, belongs to either. Four rays a few roundings beside it tell "
+  fputs("A ray that runs in a face of two cells, or within a few roundings of one, belongs to either. Four rays a few "
+        "roundings beside it tell "
         "what its light is:\n\n",
         file);
   if (converge->rays_beside > 0)
     fprintf(file, "* %d of the rays run so, and are compared with what those four have.\n", converge->rays_beside);
   if (converge->rays_replaced > 0)
-    fprintf(file, "* %d rays, where these four differ by more than %g, were replaced by others%s.\n", converge->rays_replaced,
-            CONVERGE_TRUST, converge->ray_count < converge->rays_wanted ? ", as far as there were any" : "");
+    fprintf(file, "* %d rays, where these four differ by more than %g, were replaced by others%s.\n",
+            converge->rays_replaced, CONVERGE_TRUST,
+            converge->ray_count < converge->rays_wanted ? ", as far as there were any" : "");
   if (converge->rays_undecided > 0)
-    fprintf(file, "* With the extinction scaled, as below, %d rays at most were left out for that reason.\n", converge->rays_undecided);
+    fprintf(file, "* With the extinction scaled, as below, %d rays at most were left out for that reason.\n",
+            converge->rays_undecided);
   fputs("\n", file);
 }
 
@@ -133,7 +136,9 @@ static void put_reference(FILE *file, const Converge *converge) {
   const double worst = fmax(converge->check_max, converge->check_stiff);
   fputs("\n## The reference\n\n", file);
   if (converge->rays_blank)
-    fprintf(file, "> **Warning.** The exact picture could not be checked: no ray that shows something could be decided, of %d that were tried.\n\n",
+    fprintf(file,
+            "> **Warning.** The exact picture could not be checked: no ray that shows something could be decided, of "
+            "%d that were tried.\n\n",
             converge->rays_replaced);
   if (!(worst <= CONVERGE_TRUST))
     fprintf(file,

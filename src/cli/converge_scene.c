@@ -130,13 +130,15 @@ static TetcastStatus scale_extinction(Converge *converge, double scale, TetcastT
   return status;
 }
 
-/* The pixel of ray number i: three of four show something, by steps of the golden ratio through all of these, the others are any. */
+/* The pixel of ray number i: three of four show something, by steps of the golden ratio through all of these, the
+ * others are any. */
 static int64_t pixel_of(int i, const int64_t *shown, int64_t shown_count, int64_t count) {
   const double at = fmod(0.5 + i * 0.6180339887498949, 1);
   return i % 4 == 3 || shown_count == 0 ? (int64_t)(at * (double)count) : shown[(int64_t)(at * (double)shown_count)];
 }
 
-/* Casts the rays of the check. Those that the reference can't decide are replaced, as long as there is hope for others. */
+/* Casts the rays of the check. Those that the reference can't decide are replaced, as long as there is hope for others.
+ */
 static TetcastStatus trace_reference(Converge *converge, const Pictures *pictures) {
   const Stage *stage = &converge->stage;
   const int64_t count = pictures->width * pictures->height;
@@ -154,7 +156,8 @@ static TetcastStatus trace_reference(Converge *converge, const Pictures *picture
   for (int i = 0; i < 4 * rays && converge->ray_count < rays && going; i++) {
     BruteRay *ray = &converge->rays[converge->ray_count];
     BruteLight light;
-    brute_trace(ray, stage->mesh, stage->field, &stage->camera, pictures->width, pictures->height, pixel_of(i, shown, shown_count, count));
+    brute_trace(ray, stage->mesh, stage->field, &stage->camera, pictures->width, pictures->height,
+                pixel_of(i, shown, shown_count, count));
     brute_shade(ray, stage->transfer_function, &light);
     if (light.spread > CONVERGE_TRUST) {
       brute_release(ray);
@@ -259,7 +262,8 @@ int converge_run_scene(Converge *converge) {
   if (status != TETCAST_OK)
     return cli_failed(status);
   if (converge->rays_blank)
-    cli_warning("the exact picture could not be checked: all %d rays that were tried and show something run in faces between cells of different "
+    cli_warning("the exact picture could not be checked: all %d rays that were tried and show something run in faces "
+                "between cells of different "
                 "values, or along silhouettes",
                 converge->rays_replaced);
   const double worst = fmax(converge->check_max, converge->check_stiff);

@@ -193,7 +193,7 @@ int field_parse(const char *text, FieldSpec *spec) {
     CliGuess guess = {.word = word};
     for (int k = 0; k < KIND_COUNT; k++)
       cli_guess(&guess, kinds[k].name);
-    char *hint = cli_guess_text(&guess, "");
+    char *hint = cli_guess_text(&guess);
     const int code = cli_usage_error("mesh", "--field %s: there is no such field%s", text, hint);
     free(hint);
     free(word);

@@ -31,7 +31,8 @@ bool cli_text_write(CliText *text, const char *folder, const char *name);
  * have no lock, which killed runs have left. */
 void cli_file_tidy(const char *path);
 
-/* Takes that lock of a new file or folder. False: another process has taken it for a left-over; a new name is needed. */
+/* Takes that lock of a new file or folder. False: another process has taken it for a left-over; a new name is needed.
+ */
 bool cli_file_lock(int descriptor);
 
 /* Gives a new file the mode and, where possible, the owner of the one that it will replace. */

@@ -37,9 +37,13 @@ static int order(const void *a, const void *b) {
 
 static int complain(const char *command, const FileSetEntry *a, const FileSetEntry *b) {
   const FileSetEntry *written = a->written ? a : b, *other = a->written ? b : a;
+  if (!strcmp(written->what, other->what))
+    return cli_usage_error(command, "two of the pictures are the same file, '%s': -o names them otherwise",
+                           written->name);
   if (other->written)
     return cli_usage_error(command, "%s and %s are the same file, '%s'", written->what, other->what, written->name);
-  return cli_usage_error(command, "%s '%s' would replace %s, '%s'", written->what, written->name, other->what, other->name);
+  return cli_usage_error(command, "%s '%s' would replace %s, '%s'", written->what, written->name, other->what,
+                         other->name);
 }
 
 int fileset_check(FileSet *set, const char *command) {

@@ -39,9 +39,10 @@ static int set_files(posix_spawn_file_actions_t *actions, const char *folder, in
   return error;
 }
 
-/* Runs gnuplot with one argument in a folder (NULL: here), without the user's own settings, until it has ended. 0, or the
- * number of an error that kept it from starting; the start of what it says on file `reported` goes to `text`. How it ended is not asked
- * for: where SIGCHLD is ignored, or another part of the program waits for all children, nobody can tell. */
+/* Runs gnuplot with one argument in a folder (NULL: here), without the user's own settings, until it has ended. 0, or
+ * the number of an error that kept it from starting; the start of what it says on file `reported` goes to `text`. How
+ * it ended is not asked for: where SIGCHLD is ignored, or another part of the program waits for all children, nobody
+ * can tell. */
 static int run(const char *folder, const char *argument, int reported, char *text, size_t size) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)

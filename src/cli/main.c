@@ -68,7 +68,7 @@ static int refuse(const char *word) {
   for (int i = 0; i < COMMANDS; i++)
     cli_guess(&guess, commands[i].name);
   char *hint = word[0] != '-' && access(word, F_OK) == 0 ? cli_print("; did you mean tetcast render %s?", word)
-                                                         : cli_guess_text(&guess, "");
+                                                         : cli_guess_text(&guess);
   const int code = cli_usage_error("", "unknown %s '%s'%s", word[0] == '-' ? "option" : "command", word, hint);
   free(hint);
   return code;

@@ -10,11 +10,12 @@
 #include "cli.h"
 
 /* How programs call the numbers of blocks and materials; the first of these that there is gives the colours. */
-static const char *const label_names[] = {"block", "material", "materialids", "materialid", "material_id", "material_ids", "matid",
-                                          "mat_id", "mat", "physical", "gmsh:physical", "cell_tags", "region", "regionid", "region_id",
-                                          "regions", "domain", "subdomain", "zone", "zoneid", "part", "partid", "part_id", "objectid",
-                                          "elementblockids", "blockid", "block_id", "attribute", "medit:ref", "geometrical",
-                                          "gmsh:geometrical"};
+static const char *const label_names[] = {
+    "block",     "material",    "materialids",     "materialid",      "material_id", "material_ids", "matid",
+    "mat_id",    "mat",         "physical",        "gmsh:physical",   "cell_tags",   "region",       "regionid",
+    "region_id", "regions",     "domain",          "subdomain",       "zone",        "zoneid",       "part",
+    "partid",    "part_id",     "objectid",        "elementblockids", "blockid",     "block_id",     "attribute",
+    "medit:ref", "geometrical", "gmsh:geometrical"};
 enum { LABEL_NAMES = sizeof label_names / sizeof *label_names, LABELS_MOST = 1000 };
 
 /* Colours that colour-blind people tell apart, after M. Okabe and K. Ito, on white and on black. */
@@ -75,8 +76,8 @@ static void collect(const TetcastField *field, Matter *matter) {
   matter->count = found <= LABELS_MOST ? found : 0;
 }
 
-TetcastStatus matter_measure(TetcastContext *context, TetcastVolume *volume, const TetcastMesh *mesh, const TetcastField *labels,
-                             Matter *matter) {
+TetcastStatus matter_measure(TetcastContext *context, TetcastVolume *volume, const TetcastMesh *mesh,
+                             const TetcastField *labels, Matter *matter) {
   TetcastField *ones = NULL;
   TetcastTransferFunction *preset = NULL;
   TetcastStatus status = matter_field(context, mesh, &ones);
@@ -109,8 +110,8 @@ static double *step_colors(const Matter *matter) {
   return knots;
 }
 
-TetcastStatus matter_shade(TetcastContext *context, const TetcastVolume *volume, const Matter *matter, const char *preset,
-                           const double range[2], TetcastTransferFunction **transfer_function) {
+TetcastStatus matter_shade(TetcastContext *context, const TetcastVolume *volume, const Matter *matter,
+                           const char *preset, const double range[2], TetcastTransferFunction **transfer_function) {
   const double extinction[2] = {range[0], matter->extinction};
   TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
   desc.extinction = extinction;
@@ -119,7 +120,8 @@ TetcastStatus matter_shade(TetcastContext *context, const TetcastVolume *volume,
   double *steps = NULL;
   TetcastStatus status = TETCAST_OK;
   if (preset || matter->count == 0) {
-    status = tetcast_transfer_function_create_preset(context, volume, preset ? preset : tetcast_preset_name(0), range[0], range[1], &map);
+    status = tetcast_transfer_function_create_preset(context, volume, preset ? preset : tetcast_preset_name(0),
+                                                     range[0], range[1], &map);
     if (status == TETCAST_OK)
       desc.color = tetcast_transfer_function_color(map, &desc.color_count);
   } else {

@@ -8,8 +8,9 @@
 #include <tetcast/dataset.h>
 #include <tetcast/tetcast.h>
 
-/* Whether a dataset has no array that could be drawn: none at all, or only numbers of blocks, materials and the like over its cells.
- * *label becomes the name of those that colour tells apart, valid while the dataset lives; NULL: there are none. */
+/* Whether a dataset has no array that could be drawn: none at all, or only numbers of blocks, materials and the like
+ * over its cells. *label becomes the name of those that colour tells apart, valid while the dataset lives; NULL: there
+ * are none. */
 bool matter_wanted(const TetcastDataset *dataset, const char **label);
 
 /* A scalar that is 1 at each vertex. */
@@ -23,13 +24,13 @@ typedef struct Matter {
 } Matter;
 
 /* Finds it out; leaves the volume with the constant scalar. */
-TetcastStatus matter_measure(TetcastContext *context, TetcastVolume *volume, const TetcastMesh *mesh, const TetcastField *labels,
-                             Matter *matter);
+TetcastStatus matter_measure(TetcastContext *context, TetcastVolume *volume, const TetcastMesh *mesh,
+                             const TetcastField *labels, Matter *matter);
 
-/* The same extinction for all labels, and a colour for each; preset NULL: colours that neighbours in the list don't share, else that colour
- * map over the range. */
-TetcastStatus matter_shade(TetcastContext *context, const TetcastVolume *volume, const Matter *matter, const char *preset,
-                           const double range[2], TetcastTransferFunction **transfer_function);
+/* The same extinction for all labels, and a colour for each; preset NULL: colours that neighbours in the list don't
+ * share, else that colour map over the range. */
+TetcastStatus matter_shade(TetcastContext *context, const TetcastVolume *volume, const Matter *matter,
+                           const char *preset, const double range[2], TetcastTransferFunction **transfer_function);
 
 void matter_release(Matter *matter);
 

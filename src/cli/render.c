@@ -242,7 +242,7 @@ static int write_files(Run *run) {
 }
 
 static int perform(Run *run) {
-  cli_warn_once(); /* what the check of the output says, and writing it again, and each step of a series */
+  cli_warn_once();          /* what the check of the output says, and writing it again, and each step of a series */
   cli_interrupt_hold(true); /* checks put files in folders for a moment */
   int code = check(run);
   cli_interrupt_hold(false);

@@ -82,8 +82,8 @@ static const struct {
                      .form = "expected WxH: whole numbers from 1 to 1048576, no more than 2^30 pixels"},
     [OPTION_SAMPLES] = {"samples", KIND_INTEGERS, AT(samples), 1, 1, 1, 65536,
                         .only = COMMAND_RENDER, .form = "expected a whole number from 1 to 65536"},
-    [OPTION_BACKGROUND] = {"background", KIND_NUMBERS, AT(background), 3, 4, 0, 1,
-                           .only = COMMAND_RENDER, .form = "expected r,g,b or r,g,b,a from 0 to 1, a name such as white, gray or transparent, or #rrggbb"},
+    [OPTION_BACKGROUND] = {"background", KIND_NUMBERS, AT(background), 3, 4, 0, 1, .only = COMMAND_RENDER,
+                           .form = "expected r,g,b or r,g,b,a from 0 to 1, a name such as white or transparent, or #rrggbb"},
     [OPTION_INTEGRATOR] = {"integrator", KIND_TEXT, AT(integrator),
                            .only = COMMAND_RENDER, .form = "expected exact, midpoint:N, trapezoid:N, gauss:N (N to 16) or table:N (N from 2 to 4096)"},
     [OPTION_TOLERANCE] = {"tolerance", KIND_NUMBERS, AT(tolerance), 1, 1, 0, DBL_MAX, .only = COMMAND_RENDER,
@@ -194,7 +194,7 @@ static const char *set_preset_name(const char *name) {
     if (length < sizeof reason)
       length += (size_t)snprintf(reason + length, sizeof reason - length, " %s", tetcast_preset_name(i));
   }
-  char *hint = cli_guess_text(&guess, "");
+  char *hint = cli_guess_text(&guess);
   if (length < sizeof reason)
     snprintf(reason + length, sizeof reason - length, "%s", hint);
   free(hint);
@@ -364,7 +364,7 @@ static const char *set_color(OptionId id, double rgba[4], const OptionValue *val
     CliGuess guess = {.word = value->text};
     for (int i = 0; color_name(i); i++)
       cli_guess(&guess, color_name(i));
-    char *hint = cli_guess_text(&guess, "");
+    char *hint = cli_guess_text(&guess);
     snprintf(reason, sizeof reason, "%s%s", table[id].form, hint);
     free(hint);
     return reason;
@@ -475,13 +475,15 @@ static int set_inputs(RenderOptions *options, int count, char **paths) {
     if (!*paths[i])
       return cli_usage_error(command, "the input is '': expected a path");
   if (count > 1 && options->command == COMMAND_CONVERGE)
-    return cli_usage_error(command, "more than one input: '%s' and '%s'; a report is about one step", paths[0], paths[1]);
+    return cli_usage_error(command, "more than one input: '%s' and '%s'; a report is about one step", paths[0],
+                           paths[1]);
   if (render_options_set_inputs(options, count, (const char *const *)paths))
     return -1;
-  return cli_usage_error(command,
-                         "more than one input: '%s' and '%s'; steps of a series are numbered (step_1.vtu step_2.vtu), and parts of one "
-                         "mesh are read by a file that lists them (.pvtu, .vtm or .pvd)",
-                         paths[0], paths[1]);
+  return cli_usage_error(
+      command,
+      "more than one input: '%s' and '%s'; steps of a series are numbered (step_1.vtu step_2.vtu), and parts of one "
+      "mesh are read by a file that lists them (.pvtu, .vtm or .pvd)",
+      paths[0], paths[1]);
 }
 
 enum { WORD_HELP = 'h', WORD_OUTPUT = 'o', WORD_OPTION = 256 };
@@ -494,8 +496,8 @@ static void list_words(RenderCommand command, struct option words[OPTION_COUNT +
       continue;
     if (ids)
       ids[count] = (OptionId)id;
-    words[count++] = (struct option){table[id].name, table[id].kind == KIND_FLAG ? no_argument : required_argument, NULL,
-                                     WORD_OPTION + id};
+    words[count++] = (struct option){table[id].name, table[id].kind == KIND_FLAG ? no_argument : required_argument,
+                                     NULL, WORD_OPTION + id};
   }
   words[count++] = (struct option){"help", no_argument, NULL, WORD_HELP};
   words[count] = (struct option){NULL, 0, NULL, 0};
@@ -565,8 +567,8 @@ static int check_use(const RenderOptions *options) {
   const int result = mistaken ? cli_usage_error(command_name(options), "%s", mistaken) : -1;
   free(mistaken);
   if (options->inputs && options->time && !strncmp(options->time, "t=", 2))
-    return cli_usage_error(command_name(options), "--time %s: files on the command line have no times, only numbers, from 0",
-                           options->time);
+    return cli_usage_error(command_name(options),
+                           "--time %s: files on the command line have no times, only numbers, from 0", options->time);
   if (options->input)
     return result;
   if (!options->refine)

@@ -64,7 +64,7 @@ typedef struct RenderOptions {
   RenderCommand command;
   /* NULL unless given */
   char *input, *output, *array, *block, *time, *transfer, *preset, *extinction, *emission, *integrator, *channels, *stats, *scene, *save_scene;
-  char **inputs;           /* [input_count] of several files, the steps of a series; input is the first. NULL: one file */
+  char **inputs; /* [input_count] of several files, the steps of a series; input is the first. NULL: one file */
   int input_count;
   json_t *transfer_object; /* of a scene file; instead of transfer */
   double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], tolerance, threads, repeat;
@@ -132,8 +132,8 @@ uint32_t render_options_channels(const RenderOptions *options);
 /* Whether the pixels of options->output will be floating-point, which hold no background. */
 bool render_options_floating(const RenderOptions *options);
 
-/* Sets the input, or several as the steps of a series: their names differ in one number, by which they are sorted. False: they are
- * no such series, and nothing is set. */
+/* Sets the input, or several as the steps of a series: their names differ in one number, by which they are sorted.
+ * False: they are no such series, and nothing is set. */
 bool render_options_set_inputs(RenderOptions *options, int count, const char *const *paths);
 
 /* Sets an option. NULL, or why the value can't be (static storage or inside the options). */

@@ -22,7 +22,8 @@ static const char *set_inputs(RenderOptions *options, const json_t *list) {
       break;
     paths[named] = cli_path_join(folder, name);
   }
-  const bool fine = count > 0 && named == count && render_options_set_inputs(options, count, (const char *const *)paths);
+  const bool fine =
+      count > 0 && named == count && render_options_set_inputs(options, count, (const char *const *)paths);
   for (int i = 0; i < named; i++)
     free(paths[i]);
   free(paths);
@@ -71,7 +72,7 @@ static void complain_of_key(const RenderOptions *options, bool in_camera, const 
     if (known && of_camera == in_camera)
       cli_guess(&guess, known);
   }
-  char *hint = cli_guess_text(&guess, in_camera ? "camera." : "");
+  char *hint = cli_guess_text(&guess);
   cli_error("%s: unknown key '%s'%s", options->scene, name, hint);
   free(hint);
 }

@@ -14,7 +14,7 @@ static const double degree = 3.14159265358979323846 / 180;
 /* Small pictures of the scene, or of its mesh as uniform matter. */
 typedef struct Probe {
   const Run *run;
-  TetcastScene *uniform; /* the mesh, but for cells that touch a NaN; NULL: coefficients, which have a channel for that */
+  TetcastScene *uniform; /* the mesh without cells that touch a NaN; NULL: coefficients, which have a channel for it */
   double extinction;     /* of it */
   double size;           /* of the mesh: the diagonal of its bounds */
 } Probe;
@@ -84,8 +84,8 @@ static TetcastScene *uniform_scene(const Run *run, double extinction) {
 }
 
 /* Renders a small picture; the largest alpha in it, or path length in the mesh if `lengths` says so. NaN: it failed. */
-static double largest_of(const Run *run, const TetcastScene *scene, const TetcastCamera *camera, int64_t width, int64_t height,
-                         bool lengths) {
+static double largest_of(const Run *run, const TetcastScene *scene, const TetcastCamera *camera, int64_t width,
+                         int64_t height, bool lengths) {
   TetcastFrameDesc desc = tetcast_frame_desc_default();
   desc.width = width;
   desc.height = height;
@@ -104,7 +104,8 @@ static double largest_of(const Run *run, const TetcastScene *scene, const Tetcas
   return largest;
 }
 
-/* Whether rays of the picture's camera, or another, meet anything, in a picture of the same shape with 256 pixels a side at most. */
+/* Whether rays of the picture's camera, or another, meet anything, in a picture of the same shape with 256 pixels a
+ * side at most. */
 static bool meets(const Probe *probe, const TetcastScene *scene, const TetcastCamera *camera) {
   const double *size = probe->run->options.size, scale = fmax(1, fmax(size[0], size[1]) / 256);
   const int64_t width = (int64_t)fmax(1, round(size[0] / scale)), height = (int64_t)fmax(1, round(size[1] / scale));
@@ -180,7 +181,8 @@ static const char *explain_camera(const Run *run) {
     double from[3];
     for (int k = 0; k < 3; k++)
       from[k] = bounds[2 * k + (corner >> k & 1)] - camera->eye[k];
-    const double depth = dot(from, axes.forward), half = axes.half * (camera->projection == TETCAST_PERSPECTIVE ? depth : 1);
+    const double depth = dot(from, axes.forward),
+                 half = axes.half * (camera->projection == TETCAST_PERSPECTIVE ? depth : 1);
     const double x = dot(from, axes.right), y = dot(from, axes.up);
     behind = behind && !(depth > 0);
     past[0] = past[0] && x > half * aspect;
@@ -208,7 +210,8 @@ static char *explain_support(const Run *run) {
   const double above = first > 0 ? knots[2 * first - 2] : 0, below = last + 1 < count ? knots[2 * last + 2] : 0;
   if (first > 0 && last + 1 < count)
     return cli_print("only values between %g and %g have one", above, below);
-  return first > 0 ? cli_print("only values above %g have one", above) : cli_print("only values below %g have one", below);
+  return first > 0 ? cli_print("only values above %g have one", above)
+                   : cli_print("only values below %g have one", below);
 }
 
 /* The scene with every extinction that is not 0 as large as that of the probe. */
@@ -245,21 +248,23 @@ static char *explain_blank(const Probe *probe, const Look *look) {
     return cli_duplicate(explain_camera(run));
   }
   if (!probe->uniform)
-    return cli_print("what the camera sees has no extinction and no emission to speak of: alpha is %.2g at most, radiance %.2g",
-                     look->most_alpha, look->most_color);
+    return cli_print(
+        "what the camera sees has no extinction and no emission to speak of: alpha is %.2g at most, radiance %.2g",
+        look->most_alpha, look->most_color);
   if (look->most_alpha >= visible)
     return cli_duplicate("what is there has the colours of the background");
   const double extinction = largest_extinction(run, info->field_range);
   if (!(extinction > 0)) {
     char *support = explain_support(run);
-    char *text = cli_print("the extinction is 0 for all values%s%s, which go from %g to %g; %s", of, array, info->field_range[0],
-                           info->field_range[1], support);
+    char *text = cli_print("the extinction is 0 for all values%s%s, which go from %g to %g; %s", of, array,
+                           info->field_range[0], info->field_range[1], support);
     free(support);
     return text;
   }
   if (!meets_matter(probe))
     return cli_duplicate("no value that the camera sees has an extinction");
-  return cli_print("alpha is %.2g at most: the extinction, up to %.3g per unit of length, is too small for a mesh that measures %.3g, or "
+  return cli_print("alpha is %.2g at most: the extinction, up to %.3g per unit of length, is too small for a mesh that "
+                   "measures %.3g, or "
                    "the unit_distance of the opacity is too large",
                    look->most_alpha, extinction, probe->size);
 }
@@ -283,9 +288,10 @@ static void pixel_ray(const Run *run, int64_t number, double origin[3], double d
   normalize(direction);
 }
 
-/* What one ray sees that starts `along` an axis from an origin and looks ahead (1) or back (-1): its path in the mesh, or its alpha in the
- * scene. */
-static double cast(const Probe *probe, const double origin[3], const double direction[3], double along, int sense, bool path) {
+/* What one ray sees that starts `along` an axis from an origin and looks ahead (1) or back (-1): its path in the mesh,
+ * or its alpha in the scene. */
+static double cast(const Probe *probe, const double origin[3], const double direction[3], double along, int sense,
+                   bool path) {
   TetcastCamera camera = {.projection = TETCAST_PERSPECTIVE, .fovy = 1};
   int least = 0;
   double reach = probe->size; /* far enough for the direction not to be rounded */
@@ -311,7 +317,8 @@ static bool is_walled(const Probe *probe, int64_t pixel) {
   double origin[3], direction[3], far = probe->size;
   pixel_ray(probe->run, pixel, origin, direction);
   for (int k = 0; k < 3; k++)
-    far = fmax(far, 4 * fmax(fabs(probe->run->stage.info.bounds[2 * k] - origin[k]), fabs(probe->run->stage.info.bounds[2 * k + 1] - origin[k])));
+    far = fmax(far, 4 * fmax(fabs(probe->run->stage.info.bounds[2 * k] - origin[k]),
+                             fabs(probe->run->stage.info.bounds[2 * k + 1] - origin[k])));
   const double whole = cast(probe, origin, direction, 0, 1, true);
   if (!(whole > 0) || cast(probe, origin, direction, 0, -1, true) > 0) /* the eye is inside: nothing is before it */
     return false;
@@ -326,7 +333,8 @@ static bool is_walled(const Probe *probe, int64_t pixel) {
   return cast(probe, origin, direction, near, -1, false) >= opaque;
 }
 
-/* Whether of the pixels that are covered, all of which are opaque, so many as are looked at are so by their outermost layer. */
+/* Whether of the pixels that are covered, all of which are opaque, so many as are looked at are so by their outermost
+ * layer. */
 static bool is_wall(const Probe *probe) {
   enum { LOOKS = 9 };
   const TetcastFrame *frame = probe->run->frame;
@@ -350,11 +358,12 @@ static bool is_wall(const Probe *probe) {
 }
 
 static char *explain_wall(const Run *run) {
-  const char *text = "the picture is a wall: every pixel is opaque within the first hundredth of its way through the mesh";
+  const char *text =
+      "the picture is a wall: every pixel is opaque within the first hundredth of its way through the mesh";
   if (render_options_direct(&run->options))
     return cli_duplicate(text);
-  return cli_print("%s; an extinction less than the present one, up to %.3g per unit of length, lets more be seen", text,
-                   largest_extinction(run, run->stage.info.field_range));
+  return cli_print("%s; an extinction less than the present one, up to %.3g per unit of length, lets more be seen",
+                   text, largest_extinction(run, run->stage.info.field_range));
 }
 
 char *sight_fault(const Run *run) {

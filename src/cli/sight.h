@@ -5,9 +5,9 @@
 
 #include "render.h"
 
-/* Looks at the picture that has been rendered. NULL: something can be seen, and not only the outermost layer of a wall. Else one sentence
- * about why not, for free(). That costs a look at pixels, as a rule at a few; only where they show nothing, or nothing but opaque ones, the
- * cause is found by small pictures of the same scene. */
+/* Looks at the picture that has been rendered. NULL: something can be seen, and not only the outermost layer of a wall.
+ * Else one sentence about why not, for free(). That costs a look at pixels, as a rule at a few; only where they show
+ * nothing, or nothing but opaque ones, the cause is found by small pictures of the same scene. */
 char *sight_fault(const Run *run);
 
 #endif

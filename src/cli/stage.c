@@ -29,7 +29,8 @@ static bool choose_file(const RenderOptions *options, const int64_t *step, int64
   *file = step ? *step : asked < 0 ? asked + options->input_count : asked;
   if (*file >= 0 && *file < options->input_count)
     return true;
-  cli_error("--time %s: there are %d files: steps 0 to %d", options->time, options->input_count, options->input_count - 1);
+  cli_error("--time %s: there are %d files: steps 0 to %d", options->time, options->input_count,
+            options->input_count - 1);
   return false;
 }
 
@@ -46,7 +47,7 @@ static char *guess_array(const TetcastDataset *dataset, const char *selector) {
     cli_guess(&guess, array.name);
     cli_guess(&whole, array.name);
   }
-  char *text = known ? cli_duplicate("") : cli_guess_text(guess.best ? &guess : &whole, "");
+  char *text = known ? cli_duplicate("") : cli_guess_text(guess.best ? &guess : &whole);
   free(word);
   return text;
 }
@@ -194,9 +195,11 @@ static TetcastStatus set_transfer_function(Stage *stage, const RenderOptions *op
     if (render_options_range(options) == RANGE_FIXED)
       range = options->range;
     const bool labelled = stage->uniform && stage->array;
-    status = labelled ? matter_shade(stage->context, stage->volume, &stage->matter, options->preset, range, &stage->transfer_function)
-                      : tetcast_transfer_function_create_preset(stage->context, stage->volume, render_options_preset(options), range[0],
-                                                     range[1], &stage->transfer_function);
+    status = labelled ? matter_shade(stage->context, stage->volume, &stage->matter, options->preset, range,
+                                     &stage->transfer_function)
+                      : tetcast_transfer_function_create_preset(stage->context, stage->volume,
+                                                                render_options_preset(options), range[0], range[1],
+                                                                &stage->transfer_function);
   }
   if (status == TETCAST_OK)
     status = tetcast_scene_set_transfer_function(stage->scene, stage->transfer_function);

@@ -21,7 +21,7 @@ typedef struct Stage {
   TetcastTransferFunction *transfer_function;
   TetcastScene *scene;
   TetcastCamera camera;
-  char *array; /* what was read, as --array would name it; NULL: coefficients, or uniform matter without labels */
+  char *array;  /* what was read, as --array would name it; NULL: coefficients, or uniform matter without labels */
   bool uniform; /* nothing else is there to be drawn: matter, in the colours of the array's labels if there is one */
   Matter matter;
   double read_seconds, prepare_seconds;

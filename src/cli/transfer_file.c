@@ -39,7 +39,7 @@ static bool check_keys(const char *place, const json_t *root) {
       CliGuess guess = {.word = key};
       for (i = 0; i < sizeof known / sizeof *known; i++)
         cli_guess(&guess, known[i]);
-      char *hint = cli_guess_text(&guess, "");
+      char *hint = cli_guess_text(&guess);
       cli_error("%s: unknown key '%s'%s", place, key, hint);
       free(hint);
       return false;

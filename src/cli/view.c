@@ -48,8 +48,8 @@ const char *view_fault(const RenderOptions *options) {
              : NULL;
 }
 
-/* The axis to look along: z, but not from where the mesh is little more than a line, nor along the given up. Of the three faces of the bounds
- * the one that is seen has a tenth of the largest one's area at least. */
+/* The axis to look along: z, but not from where the mesh is little more than a line, nor along the given up. Of the
+ * three faces of the bounds the one that is seen has a tenth of the largest one's area at least. */
 static int view_axis(const RenderOptions *options, const double bounds[6]) {
   static const int preferred[3] = {2, 1, 0};
   double largest = 0, area[3], widest = 0;
@@ -60,7 +60,9 @@ static int view_axis(const RenderOptions *options, const double bounds[6]) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
     const double axis[3] = {k == 0, k == 1, k == 2};
     allowed[k] = !render_options_given(options, OPTION_UP) || !parallel(options->up, axis);
-    area[k] = largest > 0 ? (bounds[2 * i + 1] - bounds[2 * i]) / largest * ((bounds[2 * j + 1] - bounds[2 * j]) / largest) : 0;
+    area[k] = largest > 0
+                  ? (bounds[2 * i + 1] - bounds[2 * i]) / largest * ((bounds[2 * j + 1] - bounds[2 * j]) / largest)
+                  : 0;
     if (allowed[k])
       widest = fmax(widest, area[k]);
   }

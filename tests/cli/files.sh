@@ -43,7 +43,7 @@ refuse 2 'more than one input' render one/7.vtu two/7.vtu $small
 mkdir 1 2
 cp step_1.vtu 1/flow.vtu
 cp step_2.vtu 2/flow.vtu
-refuse 2 'the picture and the picture are the same file' render 1/flow.vtu 2/flow.vtu $small
+refuse 2 'two of the pictures are the same file' render 1/flow.vtu 2/flow.vtu $small
 mkdir report
 cp t.json report/time.dat
 refuse 2 'would replace --transfer' converge in.vtu -o report --transfer report/time.dat $small --no-plots

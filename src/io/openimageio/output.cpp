@@ -77,7 +77,8 @@ int NewFile::open(const std::string &path) {
   int descriptor = -1;
   do {
     m_temporary = folder + ".tetcast-" + std::to_string(::getpid()) + "-" + std::to_string(counter++) + extension;
-    descriptor = ::open(m_temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, exists ? status.st_mode & 0777 : 0666);
+    descriptor =
+        ::open(m_temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, exists ? status.st_mode & 0777 : 0666);
     if (descriptor >= 0 && !lock(descriptor)) {
       ::close(descriptor);
       descriptor = -1;

@@ -13,9 +13,9 @@
 
 namespace tetcast {
 
-// A file that will be named `path` (symbolic links followed, also to where there is nothing yet) once it is complete. It
-// keeps the mode of the file that it replaces. Until then it is a hidden file beside it with the same extension, which
-// goes away with the object, and which a lock (flock) tells from those that killed processes have left.
+// A file that will be named `path` (symbolic links followed, also to where there is nothing yet) once it is complete.
+// It keeps the mode of the file that it replaces. Until then it is a hidden file beside it with the same extension,
+// which goes away with the object, and which a lock (flock) tells from those that killed processes have left.
 class NewFile {
 public:
   NewFile() = default;
