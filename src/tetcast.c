@@ -447,6 +447,16 @@ TetcastStatus tetcast_scene_set_field(TetcastScene *scene, const TetcastField *f
   return tc_call(set_field, &(SetField){scene, field}, NULL);
 }
 
+TetcastStatus tetcast_scene_share_field(TetcastScene *scene, const TetcastScene *other) {
+  TC_ENTRY;
+  if (!scene) return TETCAST_ERROR_ARGUMENT;
+  CHECK_GIVEN(scene->context, other);
+  if (other->volume != scene->volume) return ARGUMENT(scene->context, "a field of a scene of another volume");
+  if (!other->values) return ARGUMENT(scene->context, "the other scene has no field");
+  tc_scene_share_field(scene, other);
+  return TETCAST_OK;
+}
+
 typedef struct CreatePreset {
   const TetcastScene *scene;
   const char *name;

@@ -88,7 +88,8 @@ typedef struct TetcastDatasetArray {
   bool active;                    /* the file marks it as its active scalars */
 } TetcastDatasetArray;
 
-/* Describes numeric array i = 0, 1, …, in the file's order, point arrays first. False beyond the last. */
+/* Describes numeric array i = 0, 1, …, in the file's order, point arrays first. False beyond the last. A file of several blocks without any
+ * array has the cell array "block": the number of each cell's block in tetcast_dataset_block(). */
 TETCAST_API bool tetcast_dataset_array(const TetcastDataset *dataset, int i, TetcastDatasetArray *array);
 
 /* Number of the file's points, and of its cells of any kind, of all pieces, before any are merged or left out. */

@@ -14,7 +14,8 @@ extern "C" {
 #endif
 
 typedef enum TetcastPixelType {
-  TETCAST_PIXEL_DEFAULT = 0, /* what suits the format: PNG, JPEG uint8; EXR half; TIFF float; else the format's own */
+  TETCAST_PIXEL_DEFAULT = 0, /* what suits the format: PNG, JPEG uint8; EXR half, or float where the largest colour is
+                              * beyond 65504 or below 2^-14; TIFF float; else the format's own */
   TETCAST_PIXEL_UINT8,
   TETCAST_PIXEL_UINT16,
   TETCAST_PIXEL_HALF,
@@ -34,13 +35,18 @@ TETCAST_API TetcastImageDesc tetcast_image_desc_default(void);
 
 /* Writes the frame; the format is told by the path's extension: .png .exr .tif .tiff .jpg .jpeg, also .bmp .tga .webp
  * .ppm .hdr. A pixel type the format can't hold, an unknown extension: TETCAST_ERROR_ARGUMENT. Over a translucent
- * background, integer formats with alpha hold unassociated colour. A frame's channels follow the four in .exr and .tif
- * with floating-point pixels (float beside half in .exr), in this order and in EXR by these names: "radiance",
- * "optical_depth", "transmittance", "path_length", "error"; of several groups "radiance.00", "radiance.01" …, as many
- * digits as the last needs. What can't hold them: TETCAST_ERROR_ARGUMENT. The file appears whole or not at all.
- * OpenImageIO starts threads of its own for .exr and .tif; where the system lets none start, that is TETCAST_ERROR_IO
- * (and loading this library may end the process: OpenImageIO is often built with OpenVDB, whose logger insists on
- * threads when it is loaded). */
+ * background, integer formats with alpha hold unassociated colour; .webp takes none. What a format or type can't hold,
+ * such as 70000 as half or a negative colour in .hdr, is TETCAST_ERROR_ARGUMENT; beyond the range of a float it is
+ * infinite. A frame's channels follow the four in .exr and .tif with floating-point pixels (float beside half in .exr),
+ * in this order and in EXR by these names: "radiance", "optical_depth", "transmittance", "path_length", "error"; of
+ * several groups "radiance.00", "radiance.01" …, as many digits as the last needs. What can't hold them:
+ * TETCAST_ERROR_ARGUMENT.
+ *
+ * The file appears whole or not at all; one that is replaced keeps its mode, and a symbolic link is followed. While it
+ * is written it is a hidden file beside its place, .tetcast-PROCESS-NUMBER with the same extension, under a lock
+ * (flock): one without a lock is what a killed process left. OpenImageIO starts threads of its own for .exr and .tif;
+ * where the system lets none start, that is TETCAST_ERROR_IO (and loading this library may end the process: OpenImageIO
+ * is often built with OpenVDB, whose logger insists on threads when it is loaded). */
 TETCAST_API TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, const TetcastFrame *frame,
                                               const TetcastImageDesc *desc);
 

@@ -30,6 +30,10 @@ TETCAST_API void tetcast_scene_destroy(TetcastScene **scene);
  * its array. Must not run while this scene renders. On error the scene keeps its former field. */
 TETCAST_API TetcastStatus tetcast_scene_set_field(TetcastScene *scene, const TetcastField *field);
 
+/* As that, the field that another scene of the same volume has: both then use one copy of its values, and the field itself isn't needed. A scene of another
+ * volume, or one without a field, is TETCAST_ERROR_ARGUMENT. */
+TETCAST_API TetcastStatus tetcast_scene_share_field(TetcastScene *scene, const TetcastScene *other);
+
 /* A transfer function from a colour map: colours of preset `name` (tetcast_preset_name()) over [low, high] with an extinction that rises from 0 at `low` to what
  * makes rays that meet anything opaque to one half on average, whatever the unit of length and however values are distributed; only where that is above the
  * largest double, in a mesh smaller than some 1e-308, it is that. The scene must have a field (TETCAST_ERROR_ARGUMENT); an unknown name is

@@ -63,14 +63,15 @@ static bool clip(const Cell *cell, const long double direction[3], BruteSpan *sp
   return true;
 }
 
-/* Whether all corners lie to one side of the ray as seen along either of two directions across it. */
-static bool beside(const Cell *cell, long double across[2][3]) {
+/* Whether all corners lie to one side of the ray, further away than `margin`, as seen along either of two directions
+ * across it. */
+static bool beside(const Cell *cell, long double across[2][3], long double margin) {
   for (int a = 0; a < 2; a++) {
     int positive = 0, negative = 0;
     for (int i = 0; i < 4; i++) {
       const long double distance = dot(cell->corner[i], across[a]);
-      positive += distance > 0;
-      negative += distance < 0;
+      positive += distance > margin;
+      negative += distance < -margin;
     }
     if (positive == 4 || negative == 4)
       return true;
@@ -78,6 +79,7 @@ static bool beside(const Cell *cell, long double across[2][3]) {
   return false;
 }
 
+/* Two directions of length 1, perpendicular to the ray's and to each other. */
 static void directions_across(const long double direction[3], long double across[2][3]) {
   int least = 0;
   for (int k = 1; k < 3; k++)
@@ -86,6 +88,9 @@ static void directions_across(const long double direction[3], long double across
   memset(across[0], 0, sizeof across[0]);
   across[0][(least + 1) % 3] = direction[(least + 2) % 3];
   across[0][(least + 2) % 3] = -direction[(least + 1) % 3];
+  const long double length = sqrtl(dot(across[0], across[0]));
+  for (int k = 0; k < 3; k++)
+    across[0][k] /= length;
   for (int k = 0; k < 3; k++)
     across[1][k] = direction[(k + 1) % 3] * across[0][(k + 2) % 3] - direction[(k + 2) % 3] * across[0][(k + 1) % 3];
 }
@@ -104,9 +109,9 @@ static int along(const void *a, const void *b) {
   return memcmp(x->vertices, y->vertices, sizeof x->vertices);
 }
 
-static void append(BruteRay *ray, const BruteSpan *span) {
-  ray->spans = cli_grow(ray->spans, ray->count, &ray->capacity, sizeof *ray->spans);
-  ray->spans[ray->count++] = *span;
+static void append(BruteSpans *list, const BruteSpan *span) {
+  list->spans = cli_grow(list->spans, list->count, &list->capacity, sizeof *list->spans);
+  list->spans[list->count++] = *span;
 }
 
 /* The span's scalars become those of the field; false: not finite, so transparent. */
@@ -120,11 +125,63 @@ static bool load_values(Cell *cell, const TetcastField *field, int64_t number) {
   return true;
 }
 
-static void trace(BruteRay *ray, const TetcastMesh *mesh, const TetcastField *field, const ReferenceRay *line) {
+/* In order, and without the second of cells that have the same four vertices, which count once. */
+static void put_in_order(BruteSpans *list) {
+  if (list->count > 0)
+    qsort(list->spans, (size_t)list->count, sizeof *list->spans, along);
+  int kept = 0;
+  for (int i = 0; i < list->count; i++)
+    if (kept == 0 || memcmp(list->spans[kept - 1].vertices, list->spans[i].vertices, sizeof list->spans[i].vertices))
+      list->spans[kept++] = list->spans[i];
+  list->count = kept;
+}
+
+/* How far the rays beside the ray are from it: several roundings in double of all lengths that a renderer reckons with.
+ * Its rays are no more exact than that. */
+static long double offset_of(const TetcastMesh *mesh, const ReferenceRay *line) {
+  double bounds[6];
+  tetcast_mesh_bounds(mesh, bounds);
+  long double reach = 0;
+  for (int k = 0; k < 3; k++) {
+    const long double low = fabsl(bounds[2 * k] - line->origin[k]), high = fabsl(bounds[2 * k + 1] - line->origin[k]);
+    reach += fmaxl(low, high) + fabsl(line->origin[k]);
+  }
+  return 16 * 0x1p-52L * reach;
+}
+
+/* Casts the ray and those beside it against one cell. */
+static void cast(BruteRay *ray, const Cell *cell, bool of_cells, const long double direction[3],
+                 long double offsets[BRUTE_RAYS][3]) {
+  for (int r = 0; r < BRUTE_RAYS; r++) {
+    Cell moved = *cell;
+    for (int i = 0; i < 4; i++)
+      for (int k = 0; k < 3; k++)
+        moved.corner[i][k] -= offsets[r][k];
+    BruteSpan span;
+    if (!clip(&moved, direction, &span))
+      continue;
+    if (of_cells) /* to the last bit: it may be the value of a step */
+      span.s[0] = span.s[1] = cell->value[0];
+    memcpy(span.vertices, cell->vertices, sizeof span.vertices);
+    qsort(span.vertices, 4, sizeof *span.vertices, ascending);
+    append(&ray->cast[r], &span);
+  }
+}
+
+void brute_trace(BruteRay *ray, const TetcastMesh *mesh, const TetcastField *field, const TetcastCamera *camera,
+                 int64_t width, int64_t height, int64_t pixel) {
+  const ReferenceRay line = reference_ray(camera, width, height, pixel % width, pixel / width);
   const bool of_cells = tetcast_field_association(field) == TETCAST_CELL;
   const int64_t count = tetcast_mesh_tetrahedron_count(mesh);
-  long double across[2][3];
-  directions_across(line->direction, across);
+  const long double offset = offset_of(mesh, &line);
+  long double across[2][3], offsets[BRUTE_RAYS][3] = {{0}};
+  directions_across(line.direction, across);
+  for (int r = 1; r < BRUTE_RAYS; r++) { /* around it, in no direction that meshes have faces in */
+    const long double angle = 0.7L + 1.5707963267948966L * r;
+    for (int k = 0; k < 3; k++)
+      offsets[r][k] = offset * (cosl(angle) * across[0][k] + sinl(angle) * across[1][k]);
+  }
+  *ray = (BruteRay){.pixel = pixel};
   for (int64_t number = 0; number < count; number++) {
     Cell cell;
     tetcast_mesh_tetrahedron(mesh, number, cell.vertices);
@@ -132,46 +189,19 @@ static void trace(BruteRay *ray, const TetcastMesh *mesh, const TetcastField *fi
       double position[3];
       tetcast_mesh_vertex(mesh, cell.vertices[i], position);
       for (int k = 0; k < 3; k++)
-        cell.corner[i][k] = position[k] - line->origin[k];
+        cell.corner[i][k] = position[k] - line.origin[k];
     }
-    BruteSpan span;
-    if (beside(&cell, across) || !load_values(&cell, field, number) || !clip(&cell, line->direction, &span))
-      continue;
-    if (of_cells) /* to the last bit: it may be the value of a step */
-      span.s[0] = span.s[1] = cell.value[0];
-    memcpy(span.vertices, cell.vertices, sizeof span.vertices);
-    qsort(span.vertices, 4, sizeof *span.vertices, ascending);
-    append(ray, &span);
+    if (!beside(&cell, across, 2 * offset) && load_values(&cell, field, number))
+      cast(ray, &cell, of_cells, line.direction, offsets);
   }
-  if (ray->count > 0)
-    qsort(ray->spans, (size_t)ray->count, sizeof *ray->spans, along);
-  int kept = 0; /* a cell whose four vertices another one has counts once */
-  for (int i = 0; i < ray->count; i++)
-    if (kept == 0 || memcmp(ray->spans[kept - 1].vertices, ray->spans[i].vertices, sizeof ray->spans[i].vertices))
-      ray->spans[kept++] = ray->spans[i];
-  ray->count = kept;
+  for (int r = 0; r < BRUTE_RAYS; r++)
+    put_in_order(&ray->cast[r]);
 }
 
-TetcastStatus brute_trace(Brute *brute, const TetcastMesh *mesh, const TetcastField *field, const TetcastCamera *camera,
-                          int64_t width, int64_t height, const int64_t *pixels, int count, TetcastProgress progress) {
-  brute->count = count;
-  brute->rays = cli_allocate(sizeof *brute->rays * (size_t)count);
-  memset(brute->rays, 0, sizeof *brute->rays * (size_t)count);
-  for (int i = 0; i < count; i++) {
-    BruteRay *ray = &brute->rays[i];
-    ray->pixel = pixels[i];
-    const ReferenceRay line = reference_ray(camera, width, height, pixels[i] % width, pixels[i] / width);
-    trace(ray, mesh, field, &line);
-    if (!progress.function(progress.user, (i + 1.0) / count))
-      return TETCAST_ERROR_CANCELLED;
-  }
-  return TETCAST_OK;
-}
-
-void brute_release(Brute *brute) {
-  for (int i = 0; i < brute->count; i++)
-    free(brute->rays[i].spans);
-  free(brute->rays);
+void brute_release(BruteRay *ray) {
+  for (int r = 0; r < BRUTE_RAYS; r++)
+    free(ray->cast[r].spans);
+  *ray = (BruteRay){0};
 }
 
 /* ── what is seen along them ── */
@@ -271,15 +301,52 @@ static void add_span(Light *light, const BruteSpan *span, const Knots *color, co
   }
 }
 
-void brute_shade(const BruteRay *ray, const TetcastTransferFunction *transfer_function, long double rgba[4]) {
+static void shade(const BruteSpans *list, const TetcastTransferFunction *transfer_function, long double rgba[4]) {
   Knots color = {.width = 4}, extinction = {.width = 2};
   color.rows = tetcast_transfer_function_color(transfer_function, &color.count);
   extinction.rows = tetcast_transfer_function_extinction(transfer_function, &extinction.count);
   long double *cuts = cli_allocate(sizeof *cuts * (size_t)(color.count + extinction.count + 2));
   Light light = {{0, 0, 0}, 0};
-  for (int i = 0; i < ray->count; i++)
-    add_span(&light, &ray->spans[i], &color, &extinction, cuts);
+  for (int i = 0; i < list->count; i++)
+    add_span(&light, &list->spans[i], &color, &extinction, cuts);
   free(cuts);
   memcpy(rgba, light.color, sizeof light.color);
   rgba[3] = -expm1l(-light.depth);
+}
+
+/* Where light changes smoothly, or with a kink, from one side of the ray to the other, the ray itself has no more than
+ * what those beside it have, by as much as they differ. A cell that was counted twice or not at all shows by going
+ * beyond. */
+void brute_shade(const BruteRay *ray, const TetcastTransferFunction *transfer_function, BruteLight *light) {
+  long double own[4];
+  shade(&ray->cast[0], transfer_function, own);
+  light->beside = false;
+  light->spread = 0;
+  for (int r = 1; r < BRUTE_RAYS; r++) {
+    long double rgba[4];
+    shade(&ray->cast[r], transfer_function, rgba);
+    for (int k = 0; k < 4; k++) {
+      light->low[k] = r == 1 ? rgba[k] : fminl(light->low[k], rgba[k]);
+      light->high[k] = r == 1 ? rgba[k] : fmaxl(light->high[k], rgba[k]);
+    }
+  }
+  for (int k = 0; k < 4; k++) {
+    const long double spread = light->high[k] - light->low[k], slack = spread + 0x1p-56L * fmaxl(1, fabsl(own[k]));
+    light->spread = fmaxl(light->spread, spread);
+    light->beside = light->beside || !(own[k] >= light->low[k] - slack && own[k] <= light->high[k] + slack);
+  }
+  for (int k = 0; k < 4 && !light->beside; k++)
+    light->low[k] = light->high[k] = own[k];
+}
+
+double brute_error(const BruteLight *light, const double rgba[4]) {
+  long double error = 0;
+  for (int k = 0; k < 4; k++) {
+    const long double below = light->low[k] - rgba[k], above = rgba[k] - light->high[k];
+    if (!(below <= error)) /* nor if it is NaN */
+      error = below;
+    if (!(above <= error))
+      error = above;
+  }
+  return (double)error;
 }

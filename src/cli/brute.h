@@ -1,7 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A slow ray caster to check the library by: in extended precision, every ray against every tetrahedron. */
+/* A slow ray caster to check the library by: in extended precision, every ray against every tetrahedron. It knows when
+ * it doesn't know: where a ray lies in a face of two cells, or so near that rounding decides, both cells or neither may
+ * take it for theirs. So each ray is cast once as it is and four times beside, by so little as a renderer in double
+ * precision may be off. Where those four agree, that is the light; where they differ, as along a silhouette or between
+ * cells of different values, no answer is right. */
 #ifndef TETCAST_CLI_BRUTE_H
 #define TETCAST_CLI_BRUTE_H
+
+#include <stdbool.h>
 
 #include <tetcast/tetcast.h>
 
@@ -11,26 +17,35 @@ typedef struct BruteSpan {
   int64_t vertices[4]; /* in order */
 } BruteSpan;
 
-typedef struct BruteRay {
-  int64_t pixel; /* row by row, from the top */
+typedef struct BruteSpans {
   int count, capacity;
   BruteSpan *spans; /* along the ray */
+} BruteSpans;
+
+enum { BRUTE_RAYS = 5 }; /* the ray itself and four beside it */
+
+typedef struct BruteRay {
+  int64_t pixel; /* row by row, from the top */
+  BruteSpans cast[BRUTE_RAYS];
 } BruteRay;
 
-typedef struct Brute {
-  int count;
-  BruteRay *rays;
-} Brute;
+/* Finds the spans of the ray through the middle of a pixel. */
+void brute_trace(BruteRay *ray, const TetcastMesh *mesh, const TetcastField *field, const TetcastCamera *camera,
+                 int64_t width, int64_t height, int64_t pixel);
 
-/* Finds the spans of one ray through the middle of each of `count` pixels. TETCAST_ERROR_CANCELLED if `progress` says
- * so.
- */
-TetcastStatus brute_trace(Brute *brute, const TetcastMesh *mesh, const TetcastField *field, const TetcastCamera *camera,
-                          int64_t width, int64_t height, const int64_t *pixels, int count, TetcastProgress progress);
+/* What is known of a ray's premultiplied colour and opacity: each lies between two numbers. */
+typedef struct BruteLight {
+  long double low[4], high[4];
+  bool beside; /* the ray itself does not go with those beside it, which state the bounds; else it does, and both are
+                  its light */
+  long double spread; /* how much those beside it differ */
+} BruteLight;
 
-/* Premultiplied colour and opacity of a ray. */
-void brute_shade(const BruteRay *ray, const TetcastTransferFunction *transfer_function, long double rgba[4]);
+void brute_shade(const BruteRay *ray, const TetcastTransferFunction *transfer_function, BruteLight *light);
 
-void brute_release(Brute *brute);
+/* How far a pixel's largest error is at least. */
+double brute_error(const BruteLight *light, const double rgba[4]);
+
+void brute_release(BruteRay *ray);
 
 #endif

@@ -4,17 +4,20 @@
 #include <ctype.h>
 #include <getopt.h>
 #include <math.h>
+#include <poll.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "progress.h"
 
 static struct {
   bool quiet;
-  const char *place;
+  const char *place, *hint;
   bool failed; /* an error has been shown; guarded by the lock of stderr, as is the list */
   bool once, strict;
   bool refused; /* a warning was an error */
@@ -44,6 +47,10 @@ bool cli_quiet(void) {
 
 void cli_set_place(const char *place) {
   messages.place = place;
+}
+
+void cli_set_hint(const char *hint) {
+  messages.hint = hint;
 }
 
 /* One call of fprintf, as lines may come from several threads; control characters of file and array names stay out of
@@ -104,9 +111,12 @@ static void show_warning(const char *text) {
 
 static void receive(void *user, TetcastSeverity severity, const char *text) {
   (void)user;
-  if (severity == TETCAST_SEVERITY_ERROR)
-    show_error(messages.place, text);
-  else if (severity == TETCAST_SEVERITY_WARNING)
+  if (severity == TETCAST_SEVERITY_ERROR) {
+    char *whole = cli_print("%s%s", text, messages.hint ? messages.hint : "");
+    show_error(messages.place, whole);
+    free(whole);
+  }
+  if (severity == TETCAST_SEVERITY_WARNING)
     show_warning(text);
 }
 
@@ -167,16 +177,81 @@ int cli_usage_error(const char *command, const char *format, ...) {
   return CLI_USAGE;
 }
 
-int cli_bad_option(const char *command, int result, char **argv) {
+/* The number of letters to be changed, added, left out or exchanged with the next, whatever their case. */
+static size_t distance_between(const char *a, const char *b) {
+  const size_t m = strlen(a), n = strlen(b), width = n + 1;
+  size_t *d = cli_allocate(sizeof *d * (m + 1) * width);
+  for (size_t i = 0; i <= m; i++)
+    for (size_t j = 0; j <= n; j++) {
+      if (i == 0 || j == 0) {
+        d[i * width + j] = i + j;
+        continue;
+      }
+      const int x = tolower((unsigned char)a[i - 1]), y = tolower((unsigned char)b[j - 1]);
+      size_t least = d[(i - 1) * width + j - 1] + (x != y);
+      if (d[(i - 1) * width + j] + 1 < least)
+        least = d[(i - 1) * width + j] + 1;
+      if (d[i * width + j - 1] + 1 < least)
+        least = d[i * width + j - 1] + 1;
+      if (i > 1 && j > 1 && x == tolower((unsigned char)b[j - 2]) && y == tolower((unsigned char)a[i - 2]) &&
+          d[(i - 2) * width + j - 2] + 1 < least)
+        least = d[(i - 2) * width + j - 2] + 1;
+      d[i * width + j] = least;
+    }
+  const size_t result = d[m * width + n];
+  free(d);
+  return result;
+}
+
+void cli_guess(CliGuess *guess, const char *name) {
+  const size_t length = strlen(guess->word), other = strlen(name), most = 200; /* of what is a word at all */
+  if (length == 0 || other == 0 || length > most || other > most)
+    return;
+  const size_t distance = distance_between(guess->word, name), near = (length > other ? length : other) / 3;
+  /* Words of a few letters are near to everything: they have to begin alike. */
+  const bool like =
+      distance <= near || (distance == 1 && tolower((unsigned char)*guess->word) == tolower((unsigned char)*name));
+  if (like && (!guess->best || distance < guess->distance)) {
+    guess->best = name;
+    guess->distance = distance;
+  }
+}
+
+char *cli_guess_text(const CliGuess *guess) {
+  return guess->best ? cli_print("; did you mean '%s'?", guess->best) : cli_duplicate("");
+}
+
+/* `name` without dashes, as a message about it. */
+static int unknown_option(const char *command, const char *shown, int length, const char *name,
+                          const struct option *words) {
+  char *word = cli_print("%.*s", (int)strcspn(name, "="), name);
+  CliGuess guess = {.word = word};
+  for (; words->name; words++)
+    cli_guess(&guess, words->name);
+  char *hint = guess.best ? cli_print("; did you mean --%s?", guess.best) : cli_duplicate("");
+  const int code = cli_usage_error(command, "unknown or ambiguous option %.*s%s", length, shown, hint);
+  free(hint);
+  free(word);
+  return code;
+}
+
+int cli_bad_option(const char *command, int result, int argc, char **argv, const struct option *words) {
   const char *option = argv[optind - 1];
-  if (optopt > 0 && optopt < 128 && option[1] != '-')
-    return cli_usage_error(command, result == ':' ? "option -%c needs an argument" : "unknown option -%c", optopt);
+  if (optopt > 0 && optopt < 128 && optind < argc && argv[optind][0] == '-' && argv[optind][1] == optopt)
+    option = argv[optind]; /* the first letter of several */
+  if (optopt > 0 && optopt < 128 && option[1] != '-') {
+    if (result == ':')
+      return cli_usage_error(command, "option -%c needs an argument", optopt);
+    if (option[0] == '-' && option[1] && option[2]) /* a long option with one dash */
+      return unknown_option(command, option, (int)strlen(option), option + 1, words);
+    return cli_usage_error(command, "unknown option -%c", optopt);
+  }
   const int length = (int)strcspn(option, "=");
   if (result == ':')
     return cli_usage_error(command, "option %s needs an argument", option);
   if (optopt != 0)
     return cli_usage_error(command, "option %.*s takes no argument", length, option);
-  return cli_usage_error(command, "unknown or ambiguous option %.*s", length, option);
+  return unknown_option(command, option, length, option + 2, words);
 }
 
 TetcastContext *cli_context_create(int threads) {
@@ -257,6 +332,9 @@ double cli_seconds(void) {
 int cli_finish_output(void) {
   if (fflush(stdout) == 0 && !ferror(stdout))
     return CLI_DONE;
+  struct pollfd end = {.fd = STDOUT_FILENO};
+  if (poll(&end, 1, 0) > 0 && end.revents & POLLERR) /* as with "| head": the reader has enough, which is no fault */
+    return 128 + SIGPIPE;
   cli_error("cannot write to standard output");
   return CLI_FAILED;
 }

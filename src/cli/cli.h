@@ -16,6 +16,7 @@ int tetcast_cli_render(int argc, char **argv);
 int tetcast_cli_converge(int argc, char **argv);
 int tetcast_cli_info(int argc, char **argv);
 int tetcast_cli_mesh(int argc, char **argv);
+int tetcast_cli_completion(int argc, char **argv);
 
 /* One line on stderr, "tetcast: error: …", "tetcast: warning: …" or "tetcast: note: …", which says what was chosen
  * where nothing was said. Only the first error of a run is shown, and none after an interruption; warnings and notes
@@ -40,12 +41,29 @@ void cli_messages_hold(bool hold);
 /* Puts "PLACE: " before the library's errors (NULL: nothing): for calls whose arguments came from a file. */
 void cli_set_place(const char *place);
 
+/* Puts `hint` behind the library's errors (NULL: nothing): what may have been meant. */
+void cli_set_hint(const char *hint);
+
 /* An error in the way the command was called; names the command's --help and returns CLI_USAGE. */
 int cli_usage_error(const char *command, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* The message for the option that getopt_long() refused by returning '?' or ':' (with opterr = 0 and an option string
- * that starts with ':'); returns CLI_USAGE. */
-int cli_bad_option(const char *command, int result, char **argv);
+ * that starts with ':'), with the nearest of those that there are; returns CLI_USAGE. */
+struct option;
+int cli_bad_option(const char *command, int result, int argc, char **argv, const struct option *words);
+
+/* What somebody who misspelt `word` may have meant: of the names given to cli_guess() the nearest, by the number of
+ * letters to be changed, added, left out or exchanged with the next. */
+typedef struct CliGuess {
+  const char *word;
+  const char *best; /* NULL: none is near */
+  size_t distance;
+} CliGuess;
+
+void cli_guess(CliGuess *guess, const char *name);
+
+/* "; did you mean 'best'?", or "" if none is near; for free(). */
+char *cli_guess_text(const CliGuess *guess);
 
 /* A context whose messages go to stderr as above, or NULL after a message. threads 0: all processors. */
 TetcastContext *cli_context_create(int threads);

@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "cli.h"
+#include "file.h"
+#include "fileset.h"
 #include "folder.h"
 #include "gnuplot.h"
 #include "progress.h"
@@ -40,8 +42,24 @@ static char *join_words(int argc, char **argv) {
   return text;
 }
 
+/* No file of the report may be one that is read. */
+static int check_files(const RenderOptions *options) {
+  FileSet files = {0};
+  fileset_add_options(&files, options);
+  for (const char *const *name = report_files; *name; name++) {
+    char *path = cli_path_join(options->output, *name);
+    fileset_add(&files, "the report", path, true);
+    free(path);
+  }
+  return fileset_check(&files, "converge");
+}
+
 /* All that can be known to fail before anything is read. */
 static int check(Converge *converge, Folder *folder) {
+  const int same = check_files(&converge->options);
+  if (same >= 0)
+    return same;
+  cli_file_tidy(converge->options.output);
   if (!folder_check(folder, converge->options.output, report_files))
     return CLI_FAILED;
   if (!converge->options.no_plots && !gnuplot_find()) {
@@ -116,7 +134,9 @@ int tetcast_cli_converge(int argc, char **argv) {
     code = perform(&converge, &folder);
   }
   folder_release(&folder);
-  brute_release(&converge.brute);
+  for (int i = 0; i < converge.ray_count; i++)
+    brute_release(&converge.rays[i]);
+  free(converge.rays);
   if (converge.context != converge.stage.context)
     tetcast_context_destroy(&converge.context);
   stage_release(&converge.stage);

@@ -43,7 +43,15 @@ typedef struct Converge {
   ConvergeRow *rows;
   int count, capacity;
 
-  Brute brute;
+  BruteRay *rays; /* [ray_count], of the brute-force reference; NULL: not cast yet */
+  int ray_count;
+  int rays_wanted;      /* how many there were to be */
+  bool rays_blank;      /* none of them shows anything, though the picture does */
+                        /* Of those that were tried: */
+  int rays_beside;      /* ran in faces or along edges, and were decided by rays beside them */
+  int rays_replaced;    /* could not be decided, and others were taken */
+  int rays_undecided;   /* could not be decided with a scaled extinction, and were left out there; the most of any scale
+                         */
   double check_max;     /* of the exact pictures against the brute-force reference, over its rays */
   double check_stiff;   /* the same with scaled extinction, the largest, … */
   double check_scale;   /* … and where */
@@ -62,7 +70,8 @@ enum {
 /* … unless the mesh is so large that this many tests of a ray against a cell would not do; eight rays always. */
 #define CONVERGE_TESTS 4e7
 
-/* Differences to the brute-force reference above this are said loudly. */
+/* Rays beside a ray whose light differs by more leave it undecided; differences to the brute-force reference above it
+ * are said loudly. */
 #define CONVERGE_TRUST 1e-9
 
 /* Appends a row to the plan. */

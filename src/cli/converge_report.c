@@ -87,8 +87,8 @@ static void put_run(FILE *file, const Converge *converge) {
   if (converge->scene_studies) {
     fputs("| dataset | ", file);
     put_line_of(file, cli_path_name(options->input));
-    fputs(", array ", file);
-    put_line_of(file, converge->stage.array);
+    fputs(converge->stage.array ? ", array " : ", uniform matter", file);
+    put_line_of(file, converge->stage.array ? converge->stage.array : "");
     fprintf(file, " |\n| cells | %lld tetrahedra, %lld vertices |\n", (long long)converge->stage.info.tetrahedra,
             (long long)converge->stage.info.vertices);
     fprintf(file, "| picture | %.0f × %.0f pixels, one ray each, %lld segments |\n", options->size[0], options->size[1],
@@ -111,10 +111,35 @@ static void put_run(FILE *file, const Converge *converge) {
   free(cpu);
 }
 
+/* Where the reference does not know. */
+static void put_undecided(FILE *file, const Converge *converge) {
+  if (converge->rays_beside + converge->rays_replaced + converge->rays_undecided == 0)
+    return;
+  fputs("A ray that runs in a face of two cells, or within a few roundings of one, belongs to either. Four rays a few "
+        "roundings beside it tell "
+        "what its light is:\n\n",
+        file);
+  if (converge->rays_beside > 0)
+    fprintf(file, "* %d of the rays run so, and are compared with what those four have.\n", converge->rays_beside);
+  if (converge->rays_replaced > 0)
+    fprintf(file, "* %d rays, where these four differ by more than %g, were replaced by others%s.\n",
+            converge->rays_replaced, CONVERGE_TRUST,
+            converge->ray_count < converge->rays_wanted ? ", as far as there were any" : "");
+  if (converge->rays_undecided > 0)
+    fprintf(file, "* With the extinction scaled, as below, %d rays at most were left out for that reason.\n",
+            converge->rays_undecided);
+  fputs("\n", file);
+}
+
 static void put_reference(FILE *file, const Converge *converge) {
-  const int rays = converge->brute.count;
+  const int rays = converge->ray_count;
   const double worst = fmax(converge->check_max, converge->check_stiff);
   fputs("\n## The reference\n\n", file);
+  if (converge->rays_blank)
+    fprintf(file,
+            "> **Warning.** The exact picture could not be checked: no ray that shows something could be decided, of "
+            "%d that were tried.\n\n",
+            converge->rays_replaced);
   if (!(worst <= CONVERGE_TRUST))
     fprintf(file,
             "> **Warning.** The exact picture and the brute-force reference differ by up to %.2g, more than %g. Errors "
@@ -130,8 +155,9 @@ static void put_reference(FILE *file, const Converge *converge) {
       "the "
       "light along them integrated numerically with %d-bit mantissas, in steps of an optical depth of at most 1/4.\n\n",
       rays, LDBL_MANT_DIG);
-  if (rays < CONVERGE_RAYS)
+  if (converge->rays_wanted < CONVERGE_RAYS)
     fprintf(file, "The mesh is large: there are %d rays instead of the usual %d.\n\n", rays, CONVERGE_RAYS);
+  put_undecided(file, converge);
   const ConvergeRow *packets = converge_packets(converge);
   fprintf(file, "* The largest difference on these rays is **%.2g**", converge->rows[0].max_error);
   if (packets)

@@ -130,43 +130,68 @@ static TetcastStatus scale_extinction(Converge *converge, double scale, TetcastT
   return status;
 }
 
-/* Rays for the check: three of four through pixels that show something, by steps of the golden ratio through all of
- * these, the others through any pixels. */
+/* The pixel of ray number i: three of four show something, by steps of the golden ratio through all of these, the
+ * others are any. */
+static int64_t pixel_of(int i, const int64_t *shown, int64_t shown_count, int64_t count) {
+  const double at = fmod(0.5 + i * 0.6180339887498949, 1);
+  return i % 4 == 3 || shown_count == 0 ? (int64_t)(at * (double)count) : shown[(int64_t)(at * (double)shown_count)];
+}
+
+/* Casts the rays of the check. Those that the reference can't decide are replaced, as long as there is hope for others.
+ */
 static TetcastStatus trace_reference(Converge *converge, const Pictures *pictures) {
   const Stage *stage = &converge->stage;
   const int64_t count = pictures->width * pictures->height;
-  int64_t *shown = cli_allocate(sizeof *shown * (size_t)count), shown_count = 0, pixels[CONVERGE_RAYS];
+  int64_t *shown = cli_allocate(sizeof *shown * (size_t)count), shown_count = 0;
   for (int64_t i = 0; i < count; i++)
     if (pictures->exact[4 * i + 3] > 0)
       shown[shown_count++] = i;
   const double affordable = CONVERGE_TESTS / (double)tetcast_mesh_tetrahedron_count(stage->mesh);
   const int rays = affordable < 8 ? 8 : affordable > CONVERGE_RAYS ? CONVERGE_RAYS : (int)affordable;
-  for (int i = 0; i < rays; i++) {
-    const double at = fmod(0.5 + i * 0.6180339887498949, 1);
-    pixels[i] =
-        i % 4 == 3 || shown_count == 0 ? (int64_t)(at * (double)count) : shown[(int64_t)(at * (double)shown_count)];
+  converge->rays_wanted = rays;
+  converge->rays = cli_allocate(sizeof *converge->rays * (size_t)rays);
+  const TetcastProgress progress = converge_progress(converge, check_weight(converge));
+  bool going = true;
+  converge->rays_blank = shown_count > 0;
+  for (int i = 0; i < 4 * rays && converge->ray_count < rays && going; i++) {
+    BruteRay *ray = &converge->rays[converge->ray_count];
+    BruteLight light;
+    brute_trace(ray, stage->mesh, stage->field, &stage->camera, pictures->width, pictures->height,
+                pixel_of(i, shown, shown_count, count));
+    brute_shade(ray, stage->transfer_function, &light);
+    if (light.spread > CONVERGE_TRUST) {
+      brute_release(ray);
+      converge->rays_replaced++;
+    } else {
+      converge->ray_count++;
+      converge->rays_beside += light.beside;
+      converge->rays_blank = converge->rays_blank && !(light.high[3] > 0);
+    }
+    going = progress.function(progress.user, fmin(1, (double)converge->ray_count / rays));
   }
   free(shown);
-  return brute_trace(&converge->brute, stage->mesh, stage->field, &stage->camera, pictures->width, pictures->height,
-                     pixels, rays, converge_progress(converge, check_weight(converge)));
+  return going ? TETCAST_OK : TETCAST_ERROR_CANCELLED;
 }
 
 /* An exact picture's own error is its difference to the brute-force reference, on that one's rays. */
 static void check_exact(Converge *converge, const Pictures *pictures, ConvergeRow *row) {
   const double *pixels = tetcast_frame_pixels(pictures->frame);
   double largest = 0, squares = 0;
-  for (int i = 0; i < converge->brute.count; i++) {
-    const BruteRay *ray = &converge->brute.rays[i];
-    long double rgba[4];
-    brute_shade(ray, current(converge, pictures), rgba);
-    for (int k = 0; k < 4; k++) {
-      const double error = (double)fabsl(pixels[4 * ray->pixel + k] - rgba[k]);
-      largest = fmax(largest, error);
-      squares += error * error;
-    }
+  int checked = 0;
+  for (int i = 0; i < converge->ray_count; i++) {
+    BruteLight light;
+    brute_shade(&converge->rays[i], current(converge, pictures), &light);
+    if (light.spread > CONVERGE_TRUST)
+      continue;
+    const double error = brute_error(&light, pixels + 4 * converge->rays[i].pixel);
+    largest = fmax(largest, error);
+    squares += error * error;
+    checked++;
   }
+  if (converge->ray_count - checked > converge->rays_undecided)
+    converge->rays_undecided = converge->ray_count - checked;
   row->max_error = largest;
-  row->rms_error = sqrt(squares / (4.0 * converge->brute.count));
+  row->rms_error = checked > 0 ? sqrt(squares / checked) : 0;
   if (row->study == STUDY_TIME)
     converge->check_max = fmax(converge->check_max, largest);
   else if (largest > converge->check_stiff) {
@@ -200,7 +225,7 @@ static TetcastStatus run_row(Converge *converge, Pictures *pictures, int number)
     if (!row->packets) /* a study's truth is one and the same for all of its rows */
       memcpy(pictures->exact, pixels, sizeof(double) * (size_t)count);
     row->peak = peak_of(pictures);
-    if (!converge->brute.rays) {
+    if (!converge->rays) {
       status = trace_reference(converge, pictures);
       stage_drop_dataset(&converge->stage);
     }
@@ -236,6 +261,11 @@ int converge_run_scene(Converge *converge) {
   tetcast_transfer_function_destroy(&pictures.scaled);
   if (status != TETCAST_OK)
     return cli_failed(status);
+  if (converge->rays_blank)
+    cli_warning("the exact picture could not be checked: all %d rays that were tried and show something run in faces "
+                "between cells of different "
+                "values, or along silhouettes",
+                converge->rays_replaced);
   const double worst = fmax(converge->check_max, converge->check_stiff);
   if (!(worst <= CONVERGE_TRUST))
     cli_warning("the exact picture and the brute-force reference differ by %.2g: errors in the report mean nothing below "

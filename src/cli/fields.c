@@ -152,6 +152,10 @@ static const Kind kinds[] = {
 
 enum { KIND_COUNT = sizeof kinds / sizeof *kinds };
 
+const char *field_name(int i) {
+  return i >= 0 && i < KIND_COUNT ? kinds[i].name : NULL;
+}
+
 void field_print_help(void) {
   for (int i = 0; i < KIND_COUNT; i++)
     printf("          %s%-*s %s\n", kinds[i].name, (int)(25 - strlen(kinds[i].name)), kinds[i].form, kinds[i].help);
@@ -184,8 +188,17 @@ int field_parse(const char *text, FieldSpec *spec) {
   int i = 0;
   while (i < KIND_COUNT && (strlen(kinds[i].name) != length || strncmp(kinds[i].name, text, length) != 0))
     i++;
-  if (i == KIND_COUNT)
-    return cli_usage_error("mesh", "--field %s: there is no such field", text);
+  if (i == KIND_COUNT) {
+    char *word = cli_print("%.*s", (int)length, text);
+    CliGuess guess = {.word = word};
+    for (int k = 0; k < KIND_COUNT; k++)
+      cli_guess(&guess, kinds[k].name);
+    char *hint = cli_guess_text(&guess);
+    const int code = cli_usage_error("mesh", "--field %s: there is no such field%s", text, hint);
+    free(hint);
+    free(word);
+    return code;
+  }
   const Kind *kind = &kinds[i];
   *spec = (FieldSpec){.name = kind->name, .kind = i};
   memcpy(spec->parameters, kind->defaults, sizeof spec->parameters);

@@ -20,6 +20,9 @@ int field_parse(const char *text, FieldSpec *spec);
 /* values[i] at vertex i; array of the mesh's number of vertices. */
 TetcastStatus field_compute(TetcastContext *context, const TetcastMesh *mesh, const FieldSpec *spec, double *values);
 
+/* Name of field i = 0, 1, …; NULL beyond the last. Static storage. */
+const char *field_name(int i);
+
 /* One line a field on standard output. */
 void field_print_help(void);
 

@@ -8,6 +8,7 @@
 typedef struct Folder {
   char *target;             /* without slashes at the end */
   char *temporary;          /* where the files go until they are all there; NULL: not begun */
+  int lock;                 /* of that one, while it is begun: see cli_file_tidy() */
   const char *const *files; /* names that may be in it, NULL at the end */
 } Folder;
 
@@ -18,7 +19,8 @@ bool folder_check(Folder *folder, const char *path, const char *const *files);
 /* Makes the temporary folder. False after a message. */
 bool folder_begin(Folder *folder);
 
-/* Gives it its name; what was there goes. False after a message. */
+/* Gives it its name; what was there goes. Whenever the process is killed, one of the two is there (but where the file
+ * system can't exchange names). False after a message. */
 bool folder_publish(Folder *folder);
 
 /* Removes what was begun and not published. */

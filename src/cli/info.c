@@ -10,7 +10,9 @@
 #include <tetcast/tetcast.h>
 
 #include "cli.h"
+#include "completion.h"
 #include "render_options.h"
+#include "scene_file.h"
 
 static const char help_text[] =
     "Usage: tetcast info INPUT [options]\n"
@@ -114,7 +116,7 @@ static void print_arrays(const Info *info) {
     const int length = (int)strlen(info->arrays[i].about.selector);
     width = length > width && length <= 40 ? length : width;
   }
-  puts(info->array_count ? "arrays" : "arrays        none");
+  puts(info->array_count ? "arrays" : "arrays        none: drawn as uniform matter");
   for (int i = 0; i < info->array_count; i++) {
     const InfoArray *array = &info->arrays[i];
     const int indent = printf("  %-5s  %-*s  %-7s  ", array->about.association == TETCAST_CELL ? "cell" : "point",
@@ -277,18 +279,22 @@ typedef struct Request {
   int subdivide;
 } Request;
 
+static const struct option words[] = {{"json", no_argument, NULL, 'j'},
+                                      {"formats", no_argument, NULL, 'f'},
+                                      {"block", required_argument, NULL, 'b'},
+                                      {"time", required_argument, NULL, 't'},
+                                      {"merge-tolerance", required_argument, NULL, 'm'},
+                                      {"strict", no_argument, NULL, 'S'},
+                                      {"cell-to-point", no_argument, NULL, 'c'},
+                                      {"subdivide", required_argument, NULL, 's'},
+                                      {"help", no_argument, NULL, 'h'},
+                                      {NULL, 0, NULL, 0}};
+
+int completion_of_info(CompletionOption list[COMPLETION_OPTIONS]) {
+  return completion_of_words(words, list);
+}
+
 static int parse(int argc, char **argv, Request *request) {
-  static const struct option words[] = {{"json", no_argument, NULL, 'j'},
-                                        {"formats", no_argument, NULL, 'f'},
-                                        {"block", required_argument, NULL, 'b'},
-                                        {"time", required_argument, NULL, 't'},
-                                        {"merge-tolerance", required_argument, NULL, 'm'},
-                                        {"strict", no_argument, NULL, 'S'},
-                                        {"cell-to-point", no_argument, NULL, 'c'},
-                                        {"no-displacement", no_argument, NULL, 'd'},
-                                        {"subdivide", required_argument, NULL, 's'},
-                                        {"help", no_argument, NULL, 'h'},
-                                        {NULL, 0, NULL, 0}};
   *request = (Request){.merge_tolerance = -1};
   TetcastDatasetDesc desc;
   optind = 0;
@@ -334,7 +340,7 @@ static int parse(int argc, char **argv, Request *request) {
         return cli_usage_error("info", "--merge-tolerance %s: expected a distance, 0 or above", optarg);
       break;
     default:
-      return cli_bad_option("info", code, argv);
+      return cli_bad_option("info", code, argc, argv, words);
     }
   }
   if (request->formats)
@@ -344,7 +350,10 @@ static int parse(int argc, char **argv, Request *request) {
   if (optind + 1 < argc)
     return cli_usage_error("info", "more than one input: '%s' and '%s'", argv[optind], argv[optind + 1]);
   request->path = argv[optind];
-  return -1;
+  char *mistaken = scene_file_mistaken(request->path);
+  const int result = mistaken ? cli_usage_error("info", "%s", mistaken) : -1;
+  free(mistaken);
+  return result;
 }
 
 int tetcast_cli_info(int argc, char **argv) {

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include <getopt.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <tetcast/tetcast.h>
 
@@ -18,9 +20,10 @@ static const char help_text[] = "Usage: tetcast COMMAND [options]\n"
                                 "  converge INPUT measure error against run time, with plots\n"
                                 "  info INPUT     show what is in a mesh file\n"
                                 "  mesh SURFACE   fill a closed surface with tetrahedra\n"
+                                "  completion SHELL  print what bash, zsh or fish need to complete a command line\n"
                                 "\n"
-                                "  -h, --help     show this text; tetcast COMMAND --help shows a command's options\n"
-                                "      --version  show versions and which adapters are in\n"
+                                "  -h, --help     show this text; tetcast help COMMAND shows a command's options\n"
+                                "  -V, --version  show versions and which adapters are in\n"
                                 "\n"
                                 "Example:\n"
                                 "  tetcast render flow.vtu -o flow.png\n";
@@ -33,28 +36,65 @@ static int show_version(void) {
   return cli_finish_output();
 }
 
-int main(int argc, char **argv) {
-  static const struct {
-    const char *name;
-    int (*run)(int argc, char **argv);
-  } commands[] = {{"render", tetcast_cli_render},
-                  {"converge", tetcast_cli_converge},
-                  {"info", tetcast_cli_info},
-                  {"mesh", tetcast_cli_mesh}};
+typedef struct Command {
+  const char *name;
+  int (*run)(int argc, char **argv);
+} Command;
 
+static const Command commands[] = {{"render", tetcast_cli_render},
+                                   {"converge", tetcast_cli_converge},
+                                   {"info", tetcast_cli_info},
+                                   {"mesh", tetcast_cli_mesh},
+                                   {"completion", tetcast_cli_completion}};
+enum { COMMANDS = sizeof commands / sizeof *commands };
+
+static const Command *find_command(const char *name) {
+  for (int i = 0; i < COMMANDS; i++)
+    if (!strcmp(name, commands[i].name))
+      return &commands[i];
+  return NULL;
+}
+
+static int show_help(void) {
+  fputs(help_text, stdout);
+  return cli_finish_output();
+}
+
+static int refuse(const char *word) {
+  CliGuess guess = {.word = word};
+  cli_guess(&guess, "help");
+  cli_guess(&guess, "--help");
+  cli_guess(&guess, "--version");
+  for (int i = 0; i < COMMANDS; i++)
+    cli_guess(&guess, commands[i].name);
+  char *hint = word[0] != '-' && access(word, F_OK) == 0 ? cli_print("; did you mean tetcast render %s?", word)
+                                                         : cli_guess_text(&guess);
+  const int code = cli_usage_error("", "unknown %s '%s'%s", word[0] == '-' ? "option" : "command", word, hint);
+  free(hint);
+  return code;
+}
+
+/* tetcast help, tetcast help COMMAND. */
+static int help(int argc, char **argv) {
+  if (argc < 2)
+    return show_help();
+  const Command *command = find_command(argv[1]);
+  char option[] = "--help", *words[] = {argv[1], option, NULL};
+  return command ? command->run(2, words) : refuse(argv[1]);
+}
+
+int main(int argc, char **argv) {
   cli_interrupt_catch();
   opterr = 0;
   if (argc < 2)
     return cli_usage_error("", "no command given: render, converge, info or mesh");
   const char *word = argv[1];
-  for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
-    if (!strcmp(word, commands[i].name))
-      return commands[i].run(argc - 1, argv + 1);
-  if (!strcmp(word, "--version"))
+  const Command *command = find_command(word);
+  if (command)
+    return command->run(argc - 1, argv + 1);
+  if (!strcmp(word, "--version") || !strcmp(word, "-V"))
     return show_version();
-  if (!strcmp(word, "--help") || !strcmp(word, "-h")) {
-    fputs(help_text, stdout);
-    return cli_finish_output();
-  }
-  return cli_usage_error("", "unknown %s '%s'", word[0] == '-' ? "option" : "command", word);
+  if (!strcmp(word, "--help") || !strcmp(word, "-h"))
+    return show_help();
+  return !strcmp(word, "help") ? help(argc - 1, argv + 1) : refuse(word);
 }

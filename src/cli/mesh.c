@@ -20,6 +20,7 @@
 
 #include "adapter.h"
 #include "cli.h"
+#include "completion.h"
 #include "fields.h"
 #include "file.h"
 
@@ -274,7 +275,6 @@ static int run(const Job *job) {
   list_interruptions(&interruptions);
   awaited = interruptions;
   sigaddset(&awaited, SIGCHLD);
-  signal(SIGCHLD, SIG_DFL); /* ignored, as some parents leave it, there would be no status to wait for */
   sigprocmask(SIG_BLOCK, &awaited, &former);
   const pid_t parent = getpid();
   const pid_t child = phase == MAP_FAILED ? -1 : fork();
@@ -340,18 +340,28 @@ static int parse_option(Job *job, int code) {
   }
 }
 
+static const struct option words[] = {
+  {"output", required_argument, NULL, 'o'},     {"quality", required_argument, NULL, 'q'},
+  {"max-volume", required_argument, NULL, 'v'}, {"field", required_argument, NULL, 'f'},
+  {"single", no_argument, NULL, 's'},           {"quiet", no_argument, NULL, 'Q'},
+  {"help", no_argument, NULL, 'h'},             {"strict", no_argument, NULL, 'S'},
+  {NULL, 0, NULL, 0}};
+
+int completion_of_mesh(CompletionOption list[COMPLETION_OPTIONS]) {
+  static const char *fields[COMPLETION_WORDS];
+  const int count = completion_of_words(words, list);
+  for (int i = 0; i < count; i++)
+    if (!strcmp(list[i].name, "field"))
+      list[i].words = completion_words(field_name, fields);
+  return count;
+}
+
 static int parse(int argc, char **argv, Job *job) {
-  static const struct option words[] = {
-    {"output", required_argument, NULL, 'o'},     {"quality", required_argument, NULL, 'q'},
-    {"max-volume", required_argument, NULL, 'v'}, {"field", required_argument, NULL, 'f'},
-    {"single", no_argument, NULL, 's'},           {"quiet", no_argument, NULL, 'Q'},
-    {"help", no_argument, NULL, 'h'},             {"strict", no_argument, NULL, 'S'},
-    {NULL, 0, NULL, 0}};
   optind = 0;
   int code;
   while ((code = getopt_long(argc, argv, ":ho:", words, NULL)) != -1) {
     if (code == '?' || code == ':')
-      return cli_bad_option("mesh", code, argv);
+      return cli_bad_option("mesh", code, argc, argv, words);
     if (code == 'h') {
       fputs(help_text, stdout);
       field_print_help();
@@ -369,6 +379,12 @@ static int parse(int argc, char **argv, Job *job) {
   job->surface = argv[optind];
   if (!job->output)
     return cli_usage_error("mesh", "no output given: -o OUT.vtu");
+  CliFile surface = cli_file_identify(job->surface), output = cli_file_identify(job->output);
+  const bool same = cli_file_same(&surface, &output);
+  cli_file_forget(&surface);
+  cli_file_forget(&output);
+  if (same)
+    return cli_usage_error("mesh", "the surface and --output are the same file, '%s'", job->output);
   if (!ends_with(job->output, ".vtu"))
     return cli_usage_error("mesh", "--output %s: expected the name of a .vtu file", job->output);
   return -1;
@@ -379,6 +395,7 @@ int tetcast_cli_mesh(int argc, char **argv) {
   const int code = parse(argc, argv, &job);
   if (code >= 0)
     return code;
+  cli_file_tidy(job.output);
   if (!cli_file_check(job.output))
     return CLI_FAILED;
   return run(&job);

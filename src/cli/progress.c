@@ -48,8 +48,11 @@ void cli_interrupt_catch(void) {
     if (former.sa_handler != SIG_IGN) /* nohup, background jobs */
       sigaction(signals[i], &action, NULL);
   }
-  action.sa_handler = SIG_IGN; /* a file too large is an error of writing like any other */
+  action.sa_handler = SIG_IGN; /* a file too large and a pipe that nobody reads are errors of writing like any other */
   sigaction(SIGXFSZ, &action, NULL);
+  sigaction(SIGPIPE, &action, NULL);
+  action.sa_handler = SIG_DFL; /* ignored, as some parents leave it, no child could be waited for */
+  sigaction(SIGCHLD, &action, NULL);
 }
 
 void cli_interrupt_hold(bool hold) {

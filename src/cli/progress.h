@@ -9,7 +9,8 @@
 
 /* Catches SIGINT, SIGTERM and SIGHUP. They end the process at once, but between cli_interrupt_hold(true) and (false),
  * in any thread, they are remembered, for cli_interrupted() and the progress callback, so that temporary files are
- * removed first; the last (false) ends the process then. */
+ * removed first; the last (false) ends the process then. SIGPIPE is ignored, and SIGCHLD is not, whatever the parent
+ * left. */
 void cli_interrupt_catch(void);
 void cli_interrupt_hold(bool hold);
 

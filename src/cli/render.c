@@ -10,26 +10,43 @@
 
 #include "cli.h"
 #include "file.h"
+#include "fileset.h"
 #include "progress.h"
 #include "render.h"
 #include "scene_file.h"
 #include "series.h"
+#include "sight.h"
 
-/* The name of the input with .png, in the current folder. */
-static char *default_output(const char *input) {
+char *render_default_output(const char *input) {
   const char *name = cli_path_name(input);
   const char *dot = strrchr(name, '.');
   return cli_print("%.*s.png", (int)(dot && dot != name ? (size_t)(dot - name) : strlen(name)), name);
+}
+
+/* Removes what killed runs have left where this one writes. */
+static void tidy(const RenderOptions *options) {
+  const char *const outputs[] = {options->output, options->stats, options->save_scene};
+  for (int i = 0; i < 3; i++)
+    if (outputs[i])
+      cli_file_tidy(outputs[i]);
 }
 
 /* All that can be known to fail before the mesh is read and needs no image library. */
 static int check(Run *run) {
   RenderOptions *options = &run->options;
   if (!options->output)
-    options->output = default_output(options->input);
-  const int code = stage_begin(&run->stage, options);
+    options->output = render_default_output(options->input);
+  FileSet files = {0};
+  fileset_add_options(&files, options);
+  if (!series_wanted(options)) /* else it has many names */
+    fileset_add(&files, "--output", options->output, true);
+  int code = fileset_check(&files, "render");
+  if (code >= 0)
+    return code;
+  code = stage_begin(&run->stage, options);
   if (code != CLI_DONE)
     return code;
+  tidy(options);
   if ((options->stats && !cli_file_check(options->stats)) ||
       (options->save_scene && !cli_file_check(options->save_scene)))
     return CLI_FAILED;
@@ -52,7 +69,7 @@ static int check_image(Run *run) {
   cli_interrupt_hold(true); /* the check puts a file in a folder for a moment */
   const TetcastStatus status = run->image->image_check(run->stage.context, run->options.output, &run->image_desc);
   cli_interrupt_hold(false);
-  return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
+  return status == TETCAST_OK ? cli_verdict(CLI_DONE) : cli_failed(status);
 }
 
 /* What the command ends with. */
@@ -120,9 +137,22 @@ int render_create_frame(Run *run) {
   return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }
 
+/* Whether colours may come out above 1: radiance, or a transfer function that has them. */
+static bool may_shine(const Run *run) {
+  if (render_options_given(&run->options, OPTION_EMISSION))
+    return true;
+  int64_t count = 0;
+  const TetcastTransferFunction *transfer_function = run->stage.transfer_function;
+  const double *color = transfer_function ? tetcast_transfer_function_color(transfer_function, &count) : NULL;
+  for (int64_t i = 0; i < 4 * count; i++)
+    if (i % 4 > 0 && color[i] > 1)
+      return true;
+  return false;
+}
+
 /* Radiance has no scale of its own: what an integer pixel makes of it may be all white or all black. */
 static void check_brightness(const Run *run) {
-  if (!render_options_given(&run->options, OPTION_EMISSION) || render_options_floating(&run->options))
+  if (render_options_floating(&run->options) || !may_shine(run))
     return;
   const float *pixels = tetcast_frame_pixels(run->frame);
   const int64_t count = tetcast_frame_width(run->frame) * tetcast_frame_height(run->frame);
@@ -130,9 +160,11 @@ static void check_brightness(const Run *run) {
   for (int64_t i = 0; i < 4 * count; i++)
     if (i % 4 < 3 && pixels[i] > brightest)
       brightest = pixels[i];
+  const bool radiance = render_options_given(&run->options, OPTION_EMISSION);
   if (brightest > 1)
-    cli_warning("radiance up to %g: above 1 all is white in integer pixels; .exr and .tif hold it as it is", (double)brightest);
-  else if (brightest > 0 && brightest < 1.0f / 255)
+    cli_warning("%s up to %g: above 1 all is white in integer pixels; .exr and .tif hold it as it is",
+                radiance ? "radiance" : "colours", (double)brightest);
+  else if (radiance && brightest > 0 && brightest < 1.0f / 255)
     cli_warning("radiance up to %g: below 1/255 all is black in integer pixels; .exr and .tif hold it as it is", (double)brightest);
 }
 
@@ -178,6 +210,15 @@ int render_write_image(Run *run, const char *path) {
   return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }
 
+/* A picture in which nothing can be seen is worth a word. */
+static int check_sight(const Run *run) {
+  char *fault = sight_fault(run);
+  if (fault)
+    cli_warning("%s", fault);
+  free(fault);
+  return cli_verdict(CLI_DONE);
+}
+
 static int write_files(Run *run) {
   const RenderOptions *options = &run->options;
   const Stage *stage = &run->stage;
@@ -190,6 +231,7 @@ static int write_files(Run *run) {
 }
 
 static int perform(Run *run) {
+  cli_warn_once();          /* what the check of the output says, and writing it again, and each step of a series */
   cli_interrupt_hold(true); /* checks put files in folders for a moment */
   int code = check(run);
   cli_interrupt_hold(false);
@@ -203,6 +245,8 @@ static int perform(Run *run) {
     code = render_create_frame(run);
   if (code == CLI_DONE)
     code = render_frame(run);
+  if (code == CLI_DONE)
+    code = check_sight(run);
   if (code == CLI_DONE)
     code = write_files(run);
   return code;

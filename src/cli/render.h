@@ -29,6 +29,9 @@ int render_create_frame(Run *run);
 int render_frame(Run *run);
 int render_write_image(Run *run, const char *path);
 
+/* The name of the input with .png, in the current folder; for free(). */
+char *render_default_output(const char *input);
+
 /* Waits until the image library is loaded and the output has been checked, which is done beside the first reading. */
 void render_await_image(Run *run);
 

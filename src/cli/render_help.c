@@ -3,6 +3,7 @@
 
 const char render_help[] =
     "Usage: tetcast render INPUT [-o OUTPUT] [options]\n"
+    "       tetcast render STEP_1 STEP_2 ... [-o OUTPUT.##.png] [options]\n"
     "       tetcast render --scene SCENE.json [options]\n"
     "\n"
     "  -o, --output FILE       .png .exr .tif .jpg …; default: name of INPUT with .png, here\n"
@@ -23,10 +24,10 @@ const char render_help[] =
     "                          step: the step's, default for one; series: of all, default for several\n"
     "      --extinction ARRAY  --emission ARRAY   as they are, per unit of length, in place of --array …\n"
     "      --groups            their components are groups, each a channel of an .exr or .tif\n"
-    "      --eye x,y,z         --target x,y,z   --up x,y,z      default: sees all, along -z\n"
+    "      --eye x,y,z         --target x,y,z   --up x,y,z      default: sees all, along -z if it isn't flat\n"
     "      --fovy DEG          vertical angle, default 30, or --ortho HEIGHT\n"
     "      --size WxH          default 1024x768                 --samples N     per pixel\n"
-    "      --background r,g,b[,a]   of integer pixels; default 1,1,1\n"
+    "      --background r,g,b[,a]   or a name, or #rrggbb; of integer pixels, default 1,1,1\n"
     "      --pixel-type T      uint8 uint16 half float double; default: PNG, JPEG uint8,\n"
     "                          EXR half, TIFF float\n"
     "      --integrator I      exact (default), midpoint:N, trapezoid:N, gauss:N or table:N\n"

@@ -14,6 +14,9 @@
 #include <tetcast/transfer_function.h>
 
 #include "cli.h"
+#include "color.h"
+#include "completion.h"
+#include "numbered.h"
 #include "scene_file.h"
 #include "view.h"
 
@@ -86,7 +89,8 @@ static const struct {
     [OPTION_SAMPLES] = {"samples", KIND_INTEGERS, AT(samples), 1, 1, 1, 65536, .only = COMMAND_RENDER,
                         .form = "expected a whole number from 1 to 65536"},
     [OPTION_BACKGROUND] = {"background", KIND_NUMBERS, AT(background), 3, 4, 0, 1, .only = COMMAND_RENDER,
-                           .form = "expected r,g,b or r,g,b,a from 0 to 1"},
+                           .form = "expected r,g,b or r,g,b,a from 0 to 1, a name such as white or transparent, or "
+                                    "#rrggbb"},
     [OPTION_INTEGRATOR] =
         {"integrator", KIND_TEXT, AT(integrator), .only = COMMAND_RENDER,
          .form = "expected exact, midpoint:N, trapezoid:N, gauss:N (N to 16) or table:N (N from 2 to 4096)"},
@@ -133,11 +137,20 @@ RenderOptions render_options_default(RenderCommand command) {
   return options;
 }
 
+static void release_inputs(RenderOptions *options) {
+  for (int i = 0; i < options->input_count; i++)
+    free(options->inputs[i]);
+  free(options->inputs);
+  options->inputs = NULL;
+  options->input_count = 0;
+}
+
 void render_options_release(RenderOptions *options) {
   for (int id = 0; id < OPTION_COUNT; id++)
     if (table[id].kind == KIND_TEXT || table[id].kind == KIND_PATH)
       free(*(char **)((char *)options + table[id].at));
   json_decref(options->transfer_object);
+  release_inputs(options);
 }
 
 OptionId render_option_find(const char *key) {
@@ -151,6 +164,10 @@ OptionId render_option_find(const char *key) {
       return of_command((OptionId)id, COMMAND_RENDER) ? (OptionId)id : OPTION_COUNT;
   }
   return OPTION_COUNT;
+}
+
+const char *render_option_key(OptionId id) {
+  return of_command(id, COMMAND_RENDER) && id != OPTION_SCENE && id != OPTION_SAVE_SCENE ? table[id].name : NULL;
 }
 
 bool render_option_is_path(OptionId id) {
@@ -177,12 +194,18 @@ const char *render_options_claim(RenderOptions *options, OptionId id) {
 static const char *set_preset_name(const char *name) {
   static char reason[512];
   size_t length = (size_t)snprintf(reason, sizeof reason, "there is no such preset; there are");
+  CliGuess guess = {.word = name};
   for (int i = 0; tetcast_preset_name(i); i++) {
     if (!strcmp(name, tetcast_preset_name(i)))
       return NULL;
+    cli_guess(&guess, tetcast_preset_name(i));
     if (length < sizeof reason)
       length += (size_t)snprintf(reason + length, sizeof reason - length, " %s", tetcast_preset_name(i));
   }
+  char *hint = cli_guess_text(&guess);
+  if (length < sizeof reason)
+    snprintf(reason + length, sizeof reason - length, "%s", hint);
+  free(hint);
   return reason;
 }
 
@@ -273,8 +296,8 @@ static bool is_tiff(const char *path) {
 bool render_options_floating(const RenderOptions *options) {
   if (options->pixel_type != TETCAST_PIXEL_DEFAULT)
     return options->pixel_type >= TETCAST_PIXEL_HALF;
-  return options->output &&
-         (has_extension(options->output, ".exr") || is_tiff(options->output) || has_extension(options->output, ".hdr"));
+  return options->output && (has_extension(options->output, ".exr") || is_tiff(options->output) ||
+                             has_extension(options->output, ".hdr") || has_extension(options->output, ".rgbe"));
 }
 
 /* What of coefficients and what of a transfer function doesn't go together. NULL: nothing. */
@@ -340,6 +363,24 @@ static const char *set_numbers(OptionId id, void *at, const OptionValue *value) 
   return NULL;
 }
 
+static const char *set_color(OptionId id, double rgba[4], const OptionValue *value) {
+  double color[4];
+  if (!value->text)
+    return set_numbers(id, rgba, value);
+  if (!color_parse(value->text, color)) {
+    static char reason[256];
+    CliGuess guess = {.word = value->text};
+    for (int i = 0; color_name(i); i++)
+      cli_guess(&guess, color_name(i));
+    char *hint = cli_guess_text(&guess);
+    snprintf(reason, sizeof reason, "%s%s", table[id].form, hint);
+    free(hint);
+    return reason;
+  }
+  memcpy(rgba, color, sizeof color);
+  return NULL;
+}
+
 static const char *set_choice(OptionId id, void *at, const OptionValue *value) {
   for (int i = 0; value->text && *value->text && table[id].names[i]; i++) {
     if (!strcmp(value->text, table[id].names[i])) {
@@ -362,6 +403,8 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
   void *at = (char *)options + table[id].at;
   if (id == OPTION_RANGE)
     return set_range(options, value);
+  if (id == OPTION_BACKGROUND)
+    return set_color(id, at, value);
   switch (table[id].kind) {
   case KIND_NUMBERS:
   case KIND_INTEGERS:
@@ -396,11 +439,30 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
   }
 }
 
+bool render_options_set_inputs(RenderOptions *options, int count, const char *const *paths) {
+  RenderOptions taken = {.inputs = cli_allocate(sizeof *taken.inputs * (size_t)count), .input_count = count};
+  for (int i = 0; i < count; i++)
+    taken.inputs[i] = cli_duplicate(paths[i]);
+  const bool fine = count == 1 || numbered_sort(taken.inputs, count);
+  if (fine) {
+    free(options->input);
+    options->input = cli_duplicate(taken.inputs[0]);
+    release_inputs(options);
+  }
+  if (fine && count > 1) {
+    options->inputs = taken.inputs;
+    options->input_count = count;
+  } else {
+    release_inputs(&taken);
+  }
+  return fine;
+}
+
 static int set_from_text(RenderOptions *options, OptionId id, const char *text) {
   OptionValue value = {.text = text};
   if (table[id].kind == KIND_NUMBERS || table[id].kind == KIND_INTEGERS) {
     value.count = cli_parse_numbers(text, id == OPTION_SIZE ? 'x' : ',', table[id].most, value.numbers);
-    if (value.count > 0 || id != OPTION_RANGE) /* which may be a word */
+    if (value.count > 0 || (id != OPTION_RANGE && id != OPTION_BACKGROUND)) /* which may be words */
       value.text = NULL;
   } else if (table[id].kind == KIND_FLAG) {
     value.count = 1;
@@ -413,28 +475,59 @@ static int set_from_text(RenderOptions *options, OptionId id, const char *text) 
   return reason ? cli_usage_error(command_name(options), "--%s %s: %s", table[id].name, text, reason) : -1;
 }
 
+/* A series, a single file, or a usage error: two files that are neither. */
+static int set_inputs(RenderOptions *options, int count, char **paths) {
+  const char *command = command_name(options);
+  render_options_claim(options, OPTION_INPUT);
+  for (int i = 0; i < count; i++)
+    if (!*paths[i])
+      return cli_usage_error(command, "the input is '': expected a path");
+  if (count > 1 && options->command == COMMAND_CONVERGE)
+    return cli_usage_error(command, "more than one input: '%s' and '%s'; a report is about one step", paths[0],
+                           paths[1]);
+  if (render_options_set_inputs(options, count, (const char *const *)paths))
+    return -1;
+  return cli_usage_error(
+      command,
+      "more than one input: '%s' and '%s'; steps of a series are numbered (step_1.vtu step_2.vtu), and parts of one "
+      "mesh are read by a file that lists them (.pvtu, .vtm or .pvd)",
+      paths[0], paths[1]);
+}
+
+enum { WORD_HELP = 'h', WORD_OUTPUT = 'o', WORD_OPTION = 256 };
+
+/* What getopt_long() is to know of a command's options, and which they are; ids may be NULL. */
+static void list_words(RenderCommand command, struct option words[OPTION_COUNT + 2], OptionId ids[OPTION_COUNT]) {
+  int count = 0;
+  for (int id = 0; id < OPTION_COUNT; id++) {
+    if (id == OPTION_INPUT || !of_command((OptionId)id, command))
+      continue;
+    if (ids)
+      ids[count] = (OptionId)id;
+    words[count++] = (struct option){table[id].name, table[id].kind == KIND_FLAG ? no_argument : required_argument,
+                                     NULL, WORD_OPTION + id};
+  }
+  words[count++] = (struct option){"help", no_argument, NULL, WORD_HELP};
+  words[count] = (struct option){NULL, 0, NULL, 0};
+}
+
 /* The words of the command line; with `scene_only` everything but the options --scene and --help is left for later. */
 static int parse_words(RenderOptions *options, int argc, char **argv, bool scene_only) {
-  enum { HELP = 'h', OUTPUT = 'o', LONG = 256 };
   struct option words[OPTION_COUNT + 2];
-  int count = 0;
-  for (int id = 0; id < OPTION_COUNT; id++)
-    if (id != OPTION_INPUT && of_command((OptionId)id, options->command))
-      words[count++] = (struct option){table[id].name, table[id].kind == KIND_FLAG ? no_argument : required_argument,
-                                       NULL, LONG + id};
-  words[count++] = (struct option){"help", no_argument, NULL, HELP};
-  words[count] = (struct option){NULL, 0, NULL, 0};
+  list_words(options->command, words, NULL);
 
   optind = 0; /* getopt starts anew */
   int code;
   while ((code = getopt_long(argc, argv, ":ho:", words, NULL)) != -1) {
     if (code == '?' || code == ':')
-      return cli_bad_option(command_name(options), code, argv);
-    if (code == HELP) {
+      return cli_bad_option(command_name(options), code, argc, argv, words);
+    if (code == WORD_HELP) {
       fputs(options->command == COMMAND_RENDER ? render_help : converge_help, stdout);
       return cli_finish_output();
     }
-    const OptionId id = code == OUTPUT ? OPTION_OUTPUT : (OptionId)(code - LONG);
+    const OptionId id = code == WORD_OUTPUT ? OPTION_OUTPUT : (OptionId)(code - WORD_OPTION);
+    if (code == WORD_OUTPUT && !strcmp(optarg, "utput"))
+      return cli_usage_error(command_name(options), "unknown option -output; did you mean --output?");
     if (scene_only != (id == OPTION_SCENE))
       continue;
     const int result = set_from_text(options, id, optarg);
@@ -443,14 +536,7 @@ static int parse_words(RenderOptions *options, int argc, char **argv, bool scene
   }
   if (scene_only)
     return -1;
-  for (int i = optind; i < argc; i++) {
-    if (i > optind)
-      return cli_usage_error(command_name(options), "more than one input: '%s' and '%s'", argv[optind], argv[i]);
-    const int result = set_from_text(options, OPTION_INPUT, argv[i]);
-    if (result >= 0)
-      return result;
-  }
-  return -1;
+  return optind < argc ? set_inputs(options, argc - optind, argv + optind) : -1;
 }
 
 /* A scene file states a picture; what converge takes of it is what is seen, at its own size but in the shape of the picture. */
@@ -485,8 +571,14 @@ static int check_use(const RenderOptions *options) {
     return cli_usage_error("converge", "--time all: expected a single step");
   if (options->command == COMMAND_CONVERGE && render_options_range(options) == RANGE_SERIES)
     return cli_usage_error("converge", "--range series: expected two numbers, LO not above HI, or step");
+  char *mistaken = options->input ? scene_file_mistaken(options->input) : NULL;
+  const int result = mistaken ? cli_usage_error(command_name(options), "%s", mistaken) : -1;
+  free(mistaken);
+  if (options->inputs && options->time && !strncmp(options->time, "t=", 2))
+    return cli_usage_error(command_name(options),
+                           "--time %s: files on the command line have no times, only numbers, from 0", options->time);
   if (options->input)
-    return -1;
+    return result;
   if (!options->refine)
     return cli_usage_error(command_name(options), "no input given");
   const uint64_t used = BIT(OPTION_OUTPUT) | BIT(OPTION_THREADS) | BIT(OPTION_QUIET) | BIT(OPTION_STRICT) | BIT(OPTION_REFINE) |
@@ -523,4 +615,54 @@ int render_options_parse(RenderOptions *options, int argc, char **argv) {
   }
   free(fault);
   return result;
+}
+
+/* ── completion ── */
+
+static const char *preset_word(int i) {
+  return tetcast_preset_name(i);
+}
+
+static const char *const *words_of(OptionId id) {
+  static const char *presets[COMPLETION_WORDS], *colors[COMPLETION_WORDS];
+  static const char *const integrators[] = {"exact", "midpoint:", "trapezoid:", "gauss:", "table:", NULL};
+  static const char *const channels[] = {"error", "radiance", "optical_depth", "transmittance", "path_length", NULL};
+  static const char *const ranges[] = {"step", "series", NULL}, *const times[] = {"all", NULL};
+  switch (id) {
+  case OPTION_PRESET:
+    return completion_words(preset_word, presets);
+  case OPTION_BACKGROUND:
+    return completion_words(color_name, colors);
+  case OPTION_INTEGRATOR:
+    return integrators;
+  case OPTION_CHANNELS:
+    return channels;
+  case OPTION_RANGE:
+    return ranges;
+  case OPTION_TIME:
+    return times;
+  default:
+    return table[id].names;
+  }
+}
+
+static int complete(RenderCommand command, CompletionOption list[COMPLETION_OPTIONS]) {
+  struct option words[OPTION_COUNT + 2];
+  OptionId ids[OPTION_COUNT];
+  list_words(command, words, ids);
+  const int count = completion_of_words(words, list);
+  for (int i = 0; i + 1 < count; i++) { /* but for the last, --help */
+    if (table[ids[i]].kind == KIND_PATH)
+      list[i].kind = COMPLETION_PATH;
+    list[i].words = words_of(ids[i]);
+  }
+  return count;
+}
+
+int completion_of_render(CompletionOption list[COMPLETION_OPTIONS]) {
+  return complete(COMMAND_RENDER, list);
+}
+
+int completion_of_converge(CompletionOption list[COMPLETION_OPTIONS]) {
+  return complete(COMMAND_CONVERGE, list);
 }

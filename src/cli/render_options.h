@@ -65,6 +65,8 @@ typedef struct RenderOptions {
   RenderCommand command;
   /* NULL unless given */
   char *input, *output, *array, *block, *time, *transfer, *preset, *extinction, *emission, *integrator, *channels, *stats, *scene, *save_scene;
+  char **inputs; /* [input_count] of several files, the steps of a series; input is the first. NULL: one file */
+  int input_count;
   json_t *transfer_object; /* of a scene file; instead of transfer */
   double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], tolerance, threads, repeat;
   double merge_tolerance; /* negative unless given */
@@ -92,6 +94,8 @@ static inline bool render_options_given(const RenderOptions *options, OptionId i
 
 /* The option of a scene file's key, e.g. "pixel_type" or "pixel-type"; OPTION_COUNT: none. */
 OptionId render_option_find(const char *key);
+/* The key of an option in a scene file, NULL: it has none. */
+const char *render_option_key(OptionId id);
 bool render_option_is_path(OptionId id);
 bool render_option_is_flag(OptionId id);
 
@@ -128,6 +132,10 @@ uint32_t render_options_channels(const RenderOptions *options);
 
 /* Whether the pixels of options->output will be floating-point, which hold no background. */
 bool render_options_floating(const RenderOptions *options);
+
+/* Sets the input, or several as the steps of a series: their names differ in one number, by which they are sorted.
+ * False: they are no such series, and nothing is set. */
+bool render_options_set_inputs(RenderOptions *options, int count, const char *const *paths);
 
 /* Sets an option. NULL, or why the value can't be (static storage or inside the options). */
 const char *render_options_set(RenderOptions *options, OptionId id, const OptionValue *value);

@@ -1,12 +1,35 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scene_file.h"
 
+#include <ctype.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "cli.h"
 #include "file.h"
 #include "json.h"
+
+/* Several files are the steps of a series. NULL, or what is wrong. */
+static const char *set_inputs(RenderOptions *options, const json_t *list) {
+  const int count = (int)json_array_size(list);
+  char *folder = cli_path_folder(options->scene), **paths = cli_allocate(sizeof *paths * (size_t)count);
+  int named = 0;
+  for (; named < count; named++) {
+    const char *name = json_string_value(json_array_get(list, (size_t)named));
+    if (!name || !*name)
+      break;
+    paths[named] = cli_path_join(folder, name);
+  }
+  const bool fine =
+      count > 0 && named == count && render_options_set_inputs(options, count, (const char *const *)paths);
+  for (int i = 0; i < named; i++)
+    free(paths[i]);
+  free(paths);
+  free(folder);
+  return fine ? NULL : "expected a path, or a list of paths that differ in one number";
+}
 
 static bool set_value(RenderOptions *options, OptionId id, const char *key, const json_t *json) {
   OptionValue value = {.text = json_string_value(json)};
@@ -28,6 +51,8 @@ static bool set_value(RenderOptions *options, OptionId id, const char *key, cons
   } else if (id == OPTION_TRANSFER && json_is_object(json)) {
     json_decref(options->transfer_object);
     options->transfer_object = json_deep_copy(json);
+  } else if (id == OPTION_INPUT && json_is_array(json)) {
+    reason = set_inputs(options, json);
   } else {
     reason = render_options_set(options, id, &value);
   }
@@ -37,13 +62,28 @@ static bool set_value(RenderOptions *options, OptionId id, const char *key, cons
   return !reason;
 }
 
+static void complain_of_key(const RenderOptions *options, bool in_camera, const char *key, const char *name) {
+  CliGuess guess = {.word = key};
+  if (!in_camera)
+    cli_guess(&guess, "camera");
+  for (int id = 0; id < OPTION_COUNT; id++) {
+    const bool of_camera = id >= OPTION_EYE && id <= OPTION_ORTHO;
+    const char *known = render_option_key((OptionId)id);
+    if (known && of_camera == in_camera)
+      cli_guess(&guess, known);
+  }
+  char *hint = cli_guess_text(&guess);
+  cli_error("%s: unknown key '%s'%s", options->scene, name, hint);
+  free(hint);
+}
+
 static bool set_key(RenderOptions *options, bool in_camera, const char *key, const json_t *json) {
   char *name = cli_print("%s%s", in_camera ? "camera." : "", key);
   const OptionId id = render_option_find(key);
   const bool of_camera = id >= OPTION_EYE && id <= OPTION_ORTHO;
   bool done = false;
   if (id == OPTION_COUNT || id == OPTION_SCENE || id == OPTION_SAVE_SCENE || of_camera != in_camera) {
-    cli_error("%s: unknown key '%s'", options->scene, name);
+    complain_of_key(options, in_camera, key, name);
   } else if (options->source >> id & 1) {
     cli_error("%s: key '%s' appears twice", options->scene, name);
   } else {
@@ -83,6 +123,29 @@ bool scene_file_read(RenderOptions *options) {
   return done;
 }
 
+/* Whether the file begins as a JSON object does, without a word about files that can't be read. */
+static bool begins_as_object(const char *path) {
+  struct stat status;
+  FILE *file = stat(path, &status) == 0 && S_ISREG(status.st_mode) ? fopen(path, "rb") : NULL;
+  int c = file ? getc(file) : EOF;
+  while (c != EOF && isspace(c))
+    c = getc(file);
+  if (file)
+    fclose(file);
+  return c == '{';
+}
+
+char *scene_file_mistaken(const char *path) {
+  json_t *root = begins_as_object(path) ? json_load_file(path, 0, NULL) : NULL;
+  char *result = NULL;
+  if (json_object_get(root, "color"))
+    result = cli_print("'%s' is a transfer function, not a mesh: render takes it by --transfer %s", path, path);
+  else if (json_object_get(root, "input") || json_object_get(root, "camera") || json_object_get(root, "transfer"))
+    result = cli_print("'%s' is a scene, not a mesh: render takes it by --scene %s", path, path);
+  json_decref(root);
+  return result;
+}
+
 static json_t *knots(const double *values, int64_t count, int width) {
   json_t *array = json_array();
   for (int64_t i = 0; i < count; i++)
@@ -119,14 +182,31 @@ static json_t *size_array(const double size[2]) {
   return array;
 }
 
+/* The path of the input, or of each of several, from the scene's folder; NULL: one is not UTF-8. */
+static json_t *input_value(const RenderOptions *options) {
+  char *folder = cli_path_folder(options->save_scene);
+  json_t *value = options->inputs ? json_array() : NULL;
+  for (int i = 0; i < options->input_count || i == 0; i++) {
+    char *path = cli_path_relative(folder, options->inputs ? options->inputs[i] : options->input);
+    json_t *text = json_string(path);
+    free(path);
+    if (!options->inputs) {
+      value = text;
+    } else if (json_array_append_new(value, text) != 0) {
+      json_decref(value);
+      value = NULL;
+      break;
+    }
+  }
+  free(folder);
+  return value;
+}
+
 bool scene_file_write(const RenderOptions *options, const char *array, const TetcastCamera *camera,
                       const TetcastTransferFunction *transfer_function) {
-  char *folder = cli_path_folder(options->save_scene);
-  char *input = cli_path_relative(folder, options->input);
-  free(folder);
   json_t *scene = json_object();
   /* Names come from the file system and the data, and JSON takes UTF-8 only. */
-  int failed = json_object_set_new(scene, "input", json_string(input));
+  int failed = json_object_set_new(scene, "input", input_value(options));
   failed |= json_object_set_new(scene, "output", json_string(cli_path_name(options->output)));
   if (render_options_given(options, OPTION_EXTINCTION))
     failed |= json_object_set_new(scene, "extinction", json_string(options->extinction));
@@ -146,7 +226,6 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
     json_object_set_new(scene, "no_displacement", json_true());
   if (options->subdivide > 0)
     json_object_set_new(scene, "subdivide", json_integer((json_int_t)options->subdivide));
-  free(input);
   if (failed) {
     cli_error("cannot write '%s': the name of the input, the output, the array or the block is not UTF-8", options->save_scene);
     json_decref(scene);

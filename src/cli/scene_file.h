@@ -12,6 +12,10 @@
 /* Sets what the file options->scene states. False after a message. */
 bool scene_file_read(RenderOptions *options);
 
+/* What a file is that was given as a mesh, if it is a scene or a transfer function, and by which option it is to be
+ * given, for free(); NULL: it is something else. */
+char *scene_file_mistaken(const char *path);
+
 /* Writes options->save_scene: everything that makes the picture again, bit for bit. transfer_function NULL: each step of a series has one
  * of its own, by the preset. False after a message. */
 bool scene_file_write(const RenderOptions *options, const char *array, const TetcastCamera *camera,

@@ -10,8 +10,11 @@
 
 #include "cli.h"
 #include "file.h"
+#include "fileset.h"
+#include "folder.h"
 #include "progress.h"
 #include "scene_file.h"
+#include "sight.h"
 
 typedef struct Series {
   Run *run;
@@ -24,6 +27,8 @@ typedef struct Series {
   TetcastCamera camera;
   int64_t loaded; /* the step that the volume is of, -1: none yet */
   bool held;      /* interruptions are */
+  bool shown;     /* a picture shows something */
+  char *fault;    /* why the first one doesn't; NULL: it does */
   char label[64], place[32];
 } Series;
 
@@ -60,7 +65,7 @@ static bool has_number(const RenderOptions *options) {
 }
 
 static bool is_all(const RenderOptions *options) {
-  return options->time ? !strcmp(options->time, "all") : has_number(options);
+  return options->time ? !strcmp(options->time, "all") : has_number(options) || options->inputs;
 }
 
 bool series_wanted(const RenderOptions *options) {
@@ -77,6 +82,8 @@ static char *name_of(const RenderOptions *options, int64_t step) {
     return cli_print("%.*s%0*lld%s", (int)at, output, width, (long long)step, output + at + length);
   if (!is_all(options))
     return cli_duplicate(output);
+  if (options->inputs && !render_options_given(options, OPTION_OUTPUT)) /* which have numbers already */
+    return render_default_output(options->inputs[step]);
   const char *dot = strrchr(cli_path_name(output), '.');
   const int stem = (int)(dot ? (size_t)(dot - output) : strlen(output));
   return cli_print("%.*s.%04lld%s", stem, output, (long long)step, output + stem);
@@ -116,6 +123,20 @@ static int load(Series *series, int64_t step) {
   return code;
 }
 
+/* No picture may replace another file of the run, or another picture. */
+static int check_names(const Series *series) {
+  const RenderOptions *options = &series->run->options;
+  FileSet files = {0};
+  fileset_add_options(&files, options);
+  for (int64_t i = series->begin; i < series->end; i++) {
+    char *path = name_of(options, i);
+    fileset_add(&files, "the picture", path, true);
+    free(path);
+  }
+  const int code = fileset_check(&files, "render");
+  return code < 0 ? CLI_DONE : code;
+}
+
 /* How many steps there are, and which are asked for. */
 static int find_steps(Series *series) {
   Stage *stage = &series->run->stage;
@@ -132,9 +153,14 @@ static int find_steps(Series *series) {
     cli_vtk()->dataset_time(stage->dataset, i, &series->times[i]);
   if (series->count == 0)
     series->count = 1;
+  if (options->inputs) { /* each may know of steps of its own, of which its first counts */
+    free(series->times);
+    series->times = NULL;
+    series->count = options->input_count;
+  }
   series->begin = is_all(options) ? 0 : stage->step;
   series->end = is_all(options) ? series->count : stage->step + 1;
-  return CLI_DONE;
+  return check_names(series);
 }
 
 /* The range of the values of all steps. Meshes are not prepared for that. */
@@ -218,18 +244,22 @@ static bool same_content(const char *left, const char *right) {
 
 /* Pictures of a former run go with those of this one if one of them is what this run makes of its step. */
 static int check_former(Series *series, const char *path) {
-  char *folder = cli_path_folder(path);
   const char *dot = strrchr(cli_path_name(path), '.');
-  char *again = cli_print("%s/.tetcast-%ld-again%s", folder, (long)getpid(), dot ? dot : "");
-  int code = render_write_image(series->run, again);
+  char *name = cli_print("again%s", dot ? dot : "");
+  const char *const files[] = {name, NULL};
+  Folder folder = {.target = cli_duplicate(path), .files = files}; /* beside it, and gone with this run */
+  int code = folder_begin(&folder) ? CLI_DONE : CLI_FAILED;
+  char *again = code == CLI_DONE ? cli_print("%s/%s", folder.temporary, name) : NULL;
+  if (code == CLI_DONE)
+    code = render_write_image(series->run, again);
   if (code == CLI_DONE && !same_content(again, path)) {
     cli_error("--resume: '%s' is not the picture that would be made now: settings or data were others; without --resume all are made anew",
               path);
     code = CLI_FAILED;
   }
-  unlink(again);
-  free(folder);
+  folder_release(&folder);
   free(again);
+  free(name);
   return code;
 }
 
@@ -248,6 +278,14 @@ static int render_step(Series *series, int64_t step, const char *path, bool kept
   cli_progress_part(series->label, done + 0.3 / steps, done + 1 / steps);
   if (code == CLI_DONE)
     code = render_frame(run);
+  if (code == CLI_DONE && !series->shown) { /* a single step may well be empty */
+    char *fault = sight_fault(run);
+    series->shown = !fault;
+    if (series->fault)
+      free(fault);
+    else
+      series->fault = fault;
+  }
   if (code == CLI_DONE)
     code = kept ? check_former(series, path) : render_write_image(run, path);
   return code;
@@ -281,6 +319,7 @@ static int render_steps(Series *series) {
   for (int64_t i = series->begin; i < series->end && code == CLI_DONE; i++) {
     char *path = name_of(&series->run->options, i);
     const bool kept = size_kept(series, i) > 0;
+    series->shown = series->shown || kept;
     if (!kept)
       code = render_step(series, i, path, false);
     json_array_append_new(series->entries, entry_of(series, i, path, kept));
@@ -290,6 +329,10 @@ static int render_steps(Series *series) {
   }
   cli_progress_clear();
   cli_progress_part(NULL, 0, 1);
+  if (code == CLI_DONE && !series->shown && series->fault) {
+    cli_warning("of all steps: %s", series->fault);
+    code = cli_verdict(code);
+  }
   return code;
 }
 
@@ -308,7 +351,6 @@ static int write_files(const Series *series) {
 
 int series_perform(Run *run) {
   Series series = {.run = run, .loaded = -1, .entries = json_array()};
-  cli_warn_once();
   run->stage.of_series = true;
   int code = find_steps(&series);
   render_await_image(run);
@@ -323,5 +365,6 @@ int series_perform(Run *run) {
   cli_set_place(NULL);
   json_decref(series.entries);
   free(series.times);
+  free(series.fault);
   return code;
 }

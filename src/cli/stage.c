@@ -58,6 +58,34 @@ static const char *only_array(const Stage *stage, const RenderOptions *options) 
   return extinction ? extinction : emission;
 }
 
+/* Which of several files is asked for, of which each is a step; false after a message. */
+static bool choose_file(const RenderOptions *options, const int64_t *step, int64_t asked, int64_t *file) {
+  *file = step ? *step : asked < 0 ? asked + options->input_count : asked;
+  if (*file >= 0 && *file < options->input_count)
+    return true;
+  cli_error("--time %s: there are %d files: steps 0 to %d", options->time, options->input_count,
+            options->input_count - 1);
+  return false;
+}
+
+/* What may have been meant where no array has the name, or the name before its last colon; for free(). */
+static char *guess_array(const TetcastDataset *dataset, const char *selector) {
+  const char *colon = strrchr(selector, ':');
+  const size_t base = colon ? (size_t)(colon - selector) : strlen(selector);
+  char *word = cli_print("%.*s", (int)base, selector);
+  CliGuess guess = {.word = word}, whole = {.word = selector};
+  TetcastDatasetArray array;
+  bool known = false;
+  for (int i = 0; cli_vtk()->dataset_array(dataset, i, &array) && !known; i++) {
+    known = !strcmp(array.name, word) || !strcmp(array.name, selector);
+    cli_guess(&guess, array.name);
+    cli_guess(&whole, array.name);
+  }
+  char *text = known ? cli_duplicate("") : cli_guess_text(guess.best ? &guess : &whole);
+  free(word);
+  return text;
+}
+
 /* The dataset and its field or coefficients; `step` NULL: the one that the options name. */
 static int read_field(Stage *stage, const RenderOptions *options, const int64_t *step) {
   const double start = cli_seconds();
@@ -69,18 +97,37 @@ static int read_field(Stage *stage, const RenderOptions *options, const int64_t 
   desc.cell_to_point = options->cell_to_point;
   desc.no_displacement = options->no_displacement;
   desc.only = only_array(stage, options);
-  if (step) {
+  const char *path = options->input;
+  int64_t file = 0;
+  if (options->inputs) {
+    if (!choose_file(options, step, desc.step, &file))
+      return CLI_FAILED;
+    path = options->inputs[file];
+    desc.step = 0;
+  } else if (step) {
     desc.step = *step;
     desc.time = NAN;
   }
-  TetcastStatus status = vtk->dataset_read(stage->context, options->input, &desc, &stage->dataset);
+  TetcastStatus status = vtk->dataset_read(stage->context, path, &desc, &stage->dataset);
+  const char *label = NULL;
+  if (status == TETCAST_OK && !stage->array && !stage->uniform && !options->array && !render_options_direct(options))
+    stage->uniform = matter_wanted(stage->dataset, &label);
   if (status == TETCAST_OK)
-    stage->step = vtk->dataset_step(stage->dataset);
+    stage->step = options->inputs ? file : vtk->dataset_step(stage->dataset);
   if (status == TETCAST_OK && render_options_direct(options)) {
     if (!coefficients_read(stage->dataset, options, &stage->coefficients))
       return CLI_FAILED;
+  } else if (status == TETCAST_OK && stage->uniform && !stage->array && !label) {
+    cli_warning("%s: has no arrays: drawn as uniform matter", path);
   } else if (status == TETCAST_OK) {
-    status = vtk->dataset_field(stage->dataset, stage->array ? stage->array : options->array, &stage->field, &array);
+    if (label)
+      cli_warning("%s: has no arrays but labels: drawn as uniform matter in the colours of '%s'", path, label);
+    const char *selector = stage->array ? stage->array : options->array ? options->array : label;
+    char *hint = options->array ? guess_array(stage->dataset, options->array) : NULL;
+    cli_set_hint(hint);
+    status = vtk->dataset_field(stage->dataset, selector, &stage->field, &array);
+    cli_set_hint(NULL);
+    free(hint);
     if (status == TETCAST_OK && !stage->array) {
       stage->array = cli_duplicate(array);
       if (!options->array)
@@ -98,7 +145,9 @@ static int read_dataset(Stage *stage, const RenderOptions *options, const int64_
   if (code != CLI_DONE)
     return code;
   const double start = cli_seconds();
-  const TetcastStatus status = cli_vtk()->dataset_mesh(stage->dataset, &stage->mesh);
+  TetcastStatus status = cli_vtk()->dataset_mesh(stage->dataset, &stage->mesh);
+  if (status == TETCAST_OK && stage->uniform && !stage->array)
+    status = matter_field(stage->context, stage->mesh, &stage->field);
   stage->read_seconds += cli_seconds() - start;
   return status == TETCAST_OK ? cli_verdict(CLI_DONE) : cli_failed(status);
 }
@@ -128,6 +177,10 @@ static double mean_of(const TetcastField *field) {
 }
 
 int stage_read_values(Stage *stage, const RenderOptions *options, int64_t step, StageValues *values) {
+  if (stage->uniform && !stage->array) { /* which is 1 everywhere, in every step */
+    *values = (StageValues){.count = 1, .range = {1, 1}, .mean = 1};
+    return cli_verdict(CLI_DONE);
+  }
   if (!stage->field || stage->step != step) {
     stage_drop_dataset(stage);
     const int code = read_field(stage, options, &step);
@@ -179,8 +232,11 @@ static TetcastStatus set_transfer_function(Stage *stage, const RenderOptions *op
   if (!stage->transfer_function) {
     if (render_options_range(options) == RANGE_FIXED)
       range = options->range;
-    status = tetcast_scene_create_preset(stage->scene, render_options_preset(options), range[0], range[1],
-                                         &stage->transfer_function);
+    const bool labelled = stage->uniform && stage->array;
+    status = labelled ? matter_shade(stage->context, stage->scene, &stage->matter, options->preset, range,
+                                     &stage->transfer_function)
+                      : tetcast_scene_create_preset(stage->scene, render_options_preset(options), range[0], range[1],
+                                                    &stage->transfer_function);
   }
   if (status == TETCAST_OK)
     status = tetcast_scene_set_transfer_function(stage->scene, stage->transfer_function);
@@ -193,20 +249,24 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
   TetcastStatus status = create_volume(stage, options);
   if (status == TETCAST_OK && !stage->scene)
     status = tetcast_scene_create(stage->context, stage->volume, &stage->scene);
+  if (status == TETCAST_OK && stage->uniform && stage->array)
+    status = matter_measure(stage->context, stage->volume, stage->mesh, stage->field, &stage->matter);
   if (status == TETCAST_OK)
     status = stage->field ? tetcast_scene_set_field(stage->scene, stage->field)
                           : coefficients_set(stage->scene, options, &stage->coefficients);
   if (status != TETCAST_OK)
     return cli_failed(status);
   tetcast_volume_info(stage->volume, &stage->info);
-  int64_t nonfinite = 0;
+  stage->nonfinite = 0;
   if (stage->field)
-    tetcast_field_range(stage->field, stage->range, &nonfinite);
-  if (nonfinite > 0)
+    tetcast_field_range(stage->field, stage->range, &stage->nonfinite);
+  if (stage->nonfinite > 0)
     cli_warning("array %s: %lld values are NaN or infinite; the cells they touch are transparent", stage->array,
-                (long long)nonfinite);
+                (long long)stage->nonfinite);
   stage->prepare_seconds = cli_seconds() - start;
-  return view_complete(options, stage->info.bounds, &stage->camera) ? cli_verdict(CLI_DONE) : CLI_FAILED;
+  if (view_complete(options, stage->info.bounds, &stage->camera))
+    return cli_verdict(CLI_DONE);
+  return options->scene ? CLI_FAILED : CLI_USAGE; /* as for a camera that is wrong by itself */
 }
 
 int stage_shade(Stage *stage, const RenderOptions *options, const double range[2]) {
@@ -230,5 +290,6 @@ void stage_release(Stage *stage) {
   tetcast_volume_destroy(&stage->volume);
   stage_drop_dataset(stage);
   tetcast_context_destroy(&stage->context);
+  matter_release(&stage->matter);
   free(stage->array);
 }

@@ -7,6 +7,7 @@
 
 #include "adapter.h"
 #include "coefficients.h"
+#include "matter.h"
 #include "render_options.h"
 
 typedef struct Stage {
@@ -20,8 +21,11 @@ typedef struct Stage {
   TetcastTransferFunction *transfer_function;
   TetcastScene *scene;
   TetcastCamera camera;
-  double range[2];    /* of the field's finite values */
-  char *array; /* what was read, as --array would name it; NULL: coefficients */
+  double range[2];   /* of the field's finite values */
+  int64_t nonfinite; /* how many of its values are not finite */
+  char *array;  /* what was read, as --array would name it; NULL: coefficients, or uniform matter without labels */
+  bool uniform; /* nothing else is there to be drawn: matter, in the colours of the array's labels if there is one */
+  Matter matter;
   double read_seconds, prepare_seconds;
   /* for series */
   int64_t step;         /* that was read */

@@ -36,7 +36,12 @@ static bool check_keys(const char *place, const json_t *root) {
     while (i < sizeof known / sizeof *known && strcmp(key, known[i]))
       i++;
     if (i == sizeof known / sizeof *known) {
-      cli_error("%s: unknown key '%s'", place, key);
+      CliGuess guess = {.word = key};
+      for (i = 0; i < sizeof known / sizeof *known; i++)
+        cli_guess(&guess, known[i]);
+      char *hint = cli_guess_text(&guess);
+      cli_error("%s: unknown key '%s'%s", place, key, hint);
+      free(hint);
       return false;
     }
   }
@@ -50,6 +55,17 @@ static bool check_keys(const char *place, const json_t *root) {
     return false;
   }
   return true;
+}
+
+/* Colours above 1 are possible, but whoever has them most likely counts from 0 to 255. */
+static void check_colors(const char *place, const double *color, int64_t count) {
+  double largest = 0;
+  for (int64_t i = 0; i < count; i++)
+    for (int k = 1; k < 4; k++)
+      largest = color[4 * i + k] > largest ? color[4 * i + k] : largest;
+  if (largest > 1)
+    cli_warning("%s: color: values up to %g, where 1 is the brightest that integer pixels hold%s", place, largest,
+                largest <= 255 ? "; are they from 0 to 255? Divide them by 255" : "");
 }
 
 static TetcastTransferFunction *create(TetcastContext *context, const char *place, const json_t *root,
@@ -86,6 +102,7 @@ static TetcastTransferFunction *create(TetcastContext *context, const char *plac
       if (render_options_given(options, OPTION_OPACITY_MODEL))
         cli_warning("%s states extinction: --opacity-model has no effect", place);
     }
+    check_colors(place, color, desc.color_count);
     cli_set_place(place);
     const TetcastStatus status = tetcast_transfer_function_create(context, &desc, &result);
     if (status != TETCAST_OK)

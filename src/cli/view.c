@@ -48,14 +48,35 @@ const char *view_fault(const RenderOptions *options) {
              : NULL;
 }
 
-/* The view direction: along -z; along +y if the only thing known is that up is z. */
-static void place_eye(const RenderOptions *options, double distance, TetcastCamera *camera) {
-  static const double along_z[3] = {0, 0, 1};
+/* The axis to look along: z, but not from where the mesh is little more than a line, nor along the given up. Of the
+ * three faces of the bounds the one that is seen has a tenth of the largest one's area at least. */
+static int view_axis(const RenderOptions *options, const double bounds[6]) {
+  static const int preferred[3] = {2, 1, 0};
+  double largest = 0, area[3], widest = 0;
+  bool allowed[3];
+  for (int k = 0; k < 3; k++)
+    largest = fmax(largest, bounds[2 * k + 1] - bounds[2 * k]);
+  for (int k = 0; k < 3; k++) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const double axis[3] = {k == 0, k == 1, k == 2};
+    allowed[k] = !render_options_given(options, OPTION_UP) || !parallel(options->up, axis);
+    area[k] = largest > 0
+                  ? (bounds[2 * i + 1] - bounds[2 * i]) / largest * ((bounds[2 * j + 1] - bounds[2 * j]) / largest)
+                  : 0;
+    if (allowed[k])
+      widest = fmax(widest, area[k]);
+  }
+  for (int i = 0; i < 3; i++)
+    if (allowed[preferred[i]] && area[preferred[i]] >= 0.1 * widest)
+      return preferred[i];
+  return 2;
+}
+
+/* Along -z, +y or -x. */
+static void place_eye(const RenderOptions *options, const double bounds[6], double distance, TetcastCamera *camera) {
+  const int axis = view_axis(options, bounds);
   memcpy(camera->eye, camera->target, sizeof camera->eye);
-  if (render_options_given(options, OPTION_UP) && parallel(options->up, along_z))
-    camera->eye[1] -= distance;
-  else
-    camera->eye[2] += distance;
+  camera->eye[axis] += axis == 1 ? -distance : distance;
 }
 
 bool view_complete(const RenderOptions *options, const double bounds[6], TetcastCamera *camera) {
@@ -77,7 +98,7 @@ bool view_complete(const RenderOptions *options, const double bounds[6], Tetcast
   if (eye)
     memcpy(camera->eye, options->eye, sizeof camera->eye);
   else
-    place_eye(options, distance, camera);
+    place_eye(options, bounds, distance, camera);
   if (same(camera->eye, camera->target)) /* the eye is in the centre, and nothing said where to look */
     camera->target[2] -= distance;
   double forward[3];

@@ -9,8 +9,8 @@
 /* What is wrong with a camera that is wholly given, NULL: nothing. */
 const char *view_fault(const RenderOptions *options);
 
-/* The camera of the options, what they leave open completed so that all within `bounds` is seen. False after a message.
- */
+/* The camera of the options, what they leave open completed so that all within `bounds` is seen: along -z, or along +y
+ * or -x where the bounds are too flat to be seen along -z. False after a message. */
 bool view_complete(const RenderOptions *options, const double bounds[6], TetcastCamera *camera);
 
 #endif

@@ -60,6 +60,7 @@ double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, TcGathered *gat
 TetcastStatus tc_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **scene);
 void tc_scene_destroy(TetcastScene *scene);
 TetcastStatus tc_scene_set_field(TetcastScene *scene, const TetcastField *field);
+void tc_scene_share_field(TetcastScene *scene, const TetcastScene *other);
 TetcastStatus tc_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer);
 TetcastStatus tc_scene_set_coefficients(TetcastScene *scene, const TetcastCoefficientsDesc *desc);
 /* Makes what follows from field and transfer function, if that was not done. */

@@ -62,14 +62,22 @@ void tc_scene_destroy(TetcastScene *scene) {
   tc_release(scene->context, scene);
 }
 
-TetcastStatus tc_scene_set_field(TetcastScene *scene, const TetcastField *field) {
-  TcRows *rows;
-  const TetcastStatus status = tc_rows_of_scalar(scene->volume, field, &rows);
-  if (status) return status;
+static void bind(TetcastScene *scene, TcRows *rows) {
   forget(scene->prepared);
   tc_rows_release(scene->values);
   scene->values = rows;
-  return TETCAST_OK;
+}
+
+TetcastStatus tc_scene_set_field(TetcastScene *scene, const TetcastField *field) {
+  TcRows *rows;
+  const TetcastStatus status = tc_rows_of_scalar(scene->volume, field, &rows);
+  if (!status) bind(scene, rows);
+  return status;
+}
+
+void tc_scene_share_field(TetcastScene *scene, const TetcastScene *other) {
+  tc_rows_retain(other->values);
+  bind(scene, other->values);
 }
 
 /* One of the two, or neither. */

@@ -84,20 +84,6 @@ static TetcastStatus bind_all(const TetcastVolume *volume, const List lists[2], 
   return status;
 }
 
-/* The exponent of the largest emission. */
-static int emission_exponent(const List *emission) {
-  double largest = 0;
-  for (int i = 0; i < emission->count; ++i) {
-    double range[2];
-    tc_field_range(emission->fields[i], range, NULL);
-    largest = fmax(largest, fmax(fabs(range[0]), fabs(range[1])));
-  }
-  int exponent = 0;
-  if (largest > 0)
-    frexp(largest, &exponent);
-  return exponent < -1000 ? -1000 : exponent; /* whose inverse power is a number */
-}
-
 TetcastStatus tc_coefficients_create(const TetcastVolume *volume, const TetcastCoefficientsDesc *desc, TcCoefficients **out) {
   const List lists[2] = {{desc->extinction_name ? desc->extinction_name : "extinction", desc->extinction, desc->extinction_count},
                          {desc->emission_name ? desc->emission_name : "emission", desc->emission, desc->emission_count}};

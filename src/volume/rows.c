@@ -66,6 +66,12 @@ void tc_rows_release(TcRows *rows) {
   if (unused) destroy(rows);
 }
 
+void tc_rows_retain(TcRows *rows) {
+  pthread_mutex_lock(&rows->volume->rows->mutex);
+  ++rows->users;
+  pthread_mutex_unlock(&rows->volume->rows->mutex);
+}
+
 /* Rows made from this field that are in use, with one user more. */
 static TcRows *find(TcRowsCache *cache, int64_t serial) {
   pthread_mutex_lock(&cache->mutex);

@@ -46,6 +46,9 @@ TetcastStatus tc_rows_of_scalar(const TetcastVolume *volume, const TetcastField 
 /* `width` fields of one association next to each other, as they are. Their numbers of values have been checked. */
 TetcastStatus tc_rows_of_fields(const TetcastVolume *volume, const TetcastField *const *fields, int width, TcRows **rows);
 
+/* One user more. */
+void tc_rows_retain(TcRows *rows);
+
 /* One user less; NULL does nothing. */
 void tc_rows_release(TcRows *rows);
 

@@ -29,6 +29,11 @@ for array in nope s:1 v:3 v:-1 v:w v:xx v: v:x:y v:point:cell v:cell s:cell 'c d
   [ -n "$array" ] && render v render good.vtu --array "$array"
 done
 render 'c d' render good.vtu --array nope
+render "did you mean 'flat'?" render good.vtu --array falt
+render "did you mean 'flat'?" render good.vtu --array falt:mag
+render "did you mean 'c d'?" render good.vtu --array 'cd'
+render "there are: 0 to 2 and mag" render good.vtu --array v:mga
+refuse 1 "did you mean 'flat'?" converge good.vtu -o report --array fltat --no-plots
 refuse 2 '--array' render good.vtu --array ''
 
 # Transfer functions.
@@ -51,7 +56,7 @@ bad_transfer 'either' "{$color, \"extinction\": [[0,1]], \"opacity\": [[0,1]]}"
 bad_transfer 'unit_distance' "{$color, \"extinction\": [[0,1]], \"unit_distance\": 2}"
 bad_transfer 'unit_distance' "{$color, \"opacity\": [[0,1]], \"unit_distance\": \"2\"}"
 bad_transfer 't.json: ' "{$color, \"opacity\": [[0,1]], \"unit_distance\": 0}"
-bad_transfer "unknown key 'opcity'" "{$color, \"opcity\": [[0,1]]}"
+bad_transfer "unknown key 'opcity'; did you mean 'opacity'?" "{$color, \"opcity\": [[0,1]]}"
 bad_transfer 'color' '{"color": [], "extinction": [[0,1]]}'
 bad_transfer 'color[1]' '{"color": [[0,1,0,0],[1,0,0]], "extinction": [[0,1]]}'
 bad_transfer 'color[0]' '{"color": [[0,1,0,0,1]], "extinction": [[0,1]]}'
@@ -76,8 +81,10 @@ bad_scene scene.json:2 '{"input": "good.vtu",
 }'
 bad_scene scene.json:1 '{"input": "good.vtu", "input": "good.vtu"}'
 bad_scene 'JSON object' '[1]'
-bad_scene "unknown key 'inptu'" '{"inptu": "good.vtu"}'
+bad_scene "unknown key 'inptu'; did you mean 'input'?" '{"inptu": "good.vtu"}'
 bad_scene "unknown key 'eye'" '{"input": "good.vtu", "eye": [0,0,1]}'
+bad_scene "unknown key 'camra'; did you mean 'camera'?" '{"input": "good.vtu", "camra": {}}'
+bad_scene "unknown key 'camera.tragte'; did you mean 'target'?" '{"input": "good.vtu", "camera": {"tragte": [0,0,1]}}'
 bad_scene "unknown key 'camera.size'" '{"input": "good.vtu", "camera": {"size": [1,1]}}'
 bad_scene "unknown key 'save_scene'" '{"input": "good.vtu", "save_scene": "x.json"}'
 bad_scene 'input: ' '{"input": 3}'

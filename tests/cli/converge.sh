@@ -153,6 +153,29 @@ vtu overlap.vtu '0 1 3 4;0 2 3 4;1 3 5 7;0 5 6 7' 10
 warn 'brute-force reference differ' converge overlap.vtu -o overlap --transfer smooth.json --size 40x30 --repeat 1 --no-plots
 grep -q '\*\*Warning' overlap/report.md || fail 'the report does not warn'
 
+# Rays in faces: the picture is right, and is not accused. A hexahedron, which is cut along its diagonals, seen along these; a lattice seen
+# along its lines by rays that all lie in its planes, first with values that neighbours share, then with values that they do not.
+vtu hexahedron.vtu '0 1 2 3 4 5 6 7' 12
+scalar='0 1 1 0 0 1 1 0' vtu hexahedron.vtu '0 1 2 3 4 5 6 7' 12
+accept converge hexahedron.vtu -o faces --size 32x24 --repeat 1 --no-plots --strict
+holds faces 'integrator == "exact" && tolerance == 0 && study == "time" => max <= 1e-13'
+grep -q 'of the rays run so' faces/report.md || fail 'rays in faces are not counted'
+lattice() { # of 4³ voxels in [0, 4]³, as an image
+  printf '%s\n' '# vtk DataFile Version 3.0' lattice ASCII 'DATASET STRUCTURED_POINTS' 'DIMENSIONS 5 5 5' 'ORIGIN 0 0 0' 'SPACING 1 1 1' \
+    'POINT_DATA 125' 'SCALARS p double' 'LOOKUP_TABLE default'
+  for ((i = 0; i < 125; i++)); do echo $((i % 5 + 2 * (i / 5 % 5) + i / 25)); done
+  printf '%s\n' 'CELL_DATA 64' 'SCALARS c double' 'LOOKUP_TABLE default'
+  for ((i = 0; i < 64; i++)); do echo $((i * 37 % 64)); done
+}
+lattice >lattice.vtk
+accept converge lattice.vtk -o faces --array p --ortho 8 --size 8x8 --repeat 1 --no-plots --strict
+holds faces 'integrator == "exact" && tolerance == 0 && study == "time" => max <= 1e-13'
+[ "$(sed -n 's/^\* \([0-9]*\) of the rays run so.*/\1/p' faces/report.md)" -ge 20 ] || fail 'most rays run in faces'
+warn 'could not be checked' converge lattice.vtk -o faces --array c --ortho 8 --size 4x4 --repeat 1 --no-plots
+grep -q 'were replaced by others' faces/report.md || fail 'replaced rays are not counted'
+accept converge lattice.vtk -o faces --array c --ortho 8 --size 12x12 --repeat 1 --no-plots --strict
+holds faces 'integrator == "exact" && tolerance == 0 && study == "time" => max <= 1e-13'
+
 # What is refused, before anything is read; nothing appears.
 mkdir full empty
 touch full/precious
@@ -187,11 +210,18 @@ without_gnuplot() {
 }
 without_gnuplot 'no-plots'
 shell=$(command -v sh)
-printf '#!%s\ncase $* in *version*) exit 0 ;; esac\necho "line 3: no such colour" >&2\nexit 1\n' "$shell" >bin/gnuplot
-chmod +x bin/gnuplot
+fake_gnuplot() {
+  printf '#!%s\ncase $* in *version*) echo gnuplot 5.4 ;; *) %s ;; esac\n' "$shell" "$1" >bin/gnuplot
+  chmod +x bin/gnuplot
+}
+fake_gnuplot 'echo "line 3: no such colour" >&2; exit 1'
 without_gnuplot 'time.gp: line 3: no such colour'
-printf '#!%s\nexit 0\n' "$shell" >bin/gnuplot
+fake_gnuplot 'echo "line 3: no such colour" >&2; exit 0' # how it ends is not asked for
+without_gnuplot 'time.gp: line 3: no such colour'
+fake_gnuplot 'exit 0'
 without_gnuplot 'in full'
+printf '#!%s\necho command not found >&2; exit 127\n' "$shell" >bin/gnuplot
+without_gnuplot 'no-plots'
 rm -r bin
 before=$(files)
 (ulimit -f 1 && "$tetcast" converge cube.vtu -o r --size 9x9 --repeat 1 --no-plots) 2>&1 | cat >"$work.err"

@@ -40,6 +40,22 @@ accept render cube.vtu -o flat.png --array flat --size 40x30
 warn '--background has no effect' render cube.vtu -o b.exr --size 9x9 --background 0,0,0
 accept render cube.vtu -o b.exr --size 9x9 --background 0,0,0 --quiet
 
+# Backgrounds by name and by digits.
+for pair in white=1,1,1 BLACK=0,0,0 red=1,0,0 '#f00=1,0,0' '#00FF00=0,1,0' '#0000ffff=0,0,1,1' transparent=0,0,0,0 '#f000=1,0,0,0' \
+  '#33669980=0.2,0.4,0.6,0.50196078431372548'; do
+  accept render cube.vtu -o name.png --size 40x30 --background "${pair%=*}"
+  accept render cube.vtu -o numbers.png --size 40x30 --background "${pair#*=}"
+  same name.png numbers.png "background ${pair%=*}"
+done
+echo '{"input": "cube.vtu", "output": "name.png", "size": [40, 30], "background": "#33669980"}' >named.json
+accept render --scene named.json
+same name.png numbers.png 'a background in a scene'
+warn 'has no alpha' render cube.vtu -o a.jpg --size 9x9 --background transparent
+[ "$("$tetcast" render cube.vtu -o a.jpg --size 9x9 --background transparent 2>&1 | wc -l)" = 1 ] || fail 'no alpha: said twice'
+refuse 1 'has no alpha' render cube.vtu -o b.jpg --size 9x9 --background transparent --strict
+refuse 1 'opaque background' render cube.vtu -o a.webp --size 9x9 --background '#fff8'
+accept render cube.vtu -o a.webp --size 9x9
+
 # Transfer functions: extinction 2 is the opacity 1 - exp(-2) of a unit; VTK's model takes opacity as extinction.
 echo '{"color": [[0,1,0,0],[6,0,0,1]], "extinction": [[0,0],[6,0.5]]}' >extinction.json
 echo '{"color": [[0,1,0,0],[6,0,0,1]], "opacity": [[0,0],[6,1]], "unit_distance": 2}' >opacity.json

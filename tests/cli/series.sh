@@ -163,6 +163,65 @@ if [ -d "$TETCAST_DATA/cells/ensight" ] && "$tetcast" info --formats | grep -qF 
   contains '3, from t=0 to t=1.5'
 fi
 
+# Numbered files on the command line, in the order of their numbers, whatever order they come in.
+scalar='0 1 3 2 3 4 6 5' vtu a.vtu "$five_tetrahedra" 10
+scalar='0 10 30 20 30 40 60 50' vtu b.vtu "$five_tetrahedra" 10
+mkdir numbered
+cp a.vtu numbered/run_2.vtu
+cp b.vtu numbered/run_10.vtu
+cp c.vtu numbered/run_9.vtu
+cat >numbers.pvd <<END
+<?xml version="1.0"?><VTKFile type="Collection" version="0.1"><Collection>
+<DataSet timestep="0" file="numbered/run_2.vtu"/><DataSet timestep="1" file="numbered/run_9.vtu"/>
+<DataSet timestep="2" file="numbered/run_10.vtu"/></Collection></VTKFile>
+END
+accept render numbers.pvd $small -o listed.##.png
+mkdir elsewhere
+accept render numbered/run_*.vtu $small -o given.##.png --stats given.json --save-scene elsewhere/given-scene.json
+for i in 00 01 02; do same listed.$i.png given.$i.png "picture $i"; done
+[ "$(grep -c '"time": null' given.json)" = 3 ] || fail "times: $(cat given.json)"
+accept render --scene elsewhere/given-scene.json -o again.##.png
+for i in 00 01 02; do same listed.$i.png again.$i.png "picture $i of the scene"; done
+rm again.01.png
+accept render --scene elsewhere/given-scene.json -o again.##.png --resume --stats given.json
+[ "$(grep -c '"kept": true' given.json)" = 2 ] || fail "kept: $(cat given.json)"
+cd numbered || exit 1
+accept render run_10.vtu run_2.vtu run_9.vtu $small # each by its own name
+cd ..
+same numbered/run_2.png listed.00.png
+same numbered/run_9.png listed.01.png
+same numbered/run_10.png listed.02.png
+accept render numbered/run_*.vtu $small --time -1 -o last.png --range series
+same last.png listed.02.png '--time -1'
+accept render numbered/run_*.vtu $small --time 1 -o one.png
+accept render numbered/run_9.vtu $small -o alone.png
+same one.png alone.png '--time 1'
+refuse 1 'steps 0 to 2' render numbered/run_*.vtu $small --time 3 -o x.png
+refuse 1 'steps 0 to 2' render numbered/run_*.vtu $small --time -4 -o x.png
+refuse 1 'missing_1.vtu' render missing_1.vtu missing_2.vtu $small -o x.##.png
+# Other ways to number them.
+numbers() { # EXPECTED-ORDER NAMES…: the order is told by the entries of the scene
+  local expected=$1 name
+  shift
+  for name; do mkdir -p "$(dirname "$name")" && cp a.vtu "$name"; done
+  accept render "$@" --size 9x9 -o n.##.png --save-scene n.json
+  [ "$(tr -d ' \n' <n.json | sed 's/.*"input":\[//; s/\].*//')" = "$expected" ] || fail "$expected: $(cat n.json)"
+}
+numbers '"t_0.vtu","t_0.25.vtu","t_0.3.vtu","t_1.vtu","t_10.5.vtu"' t_10.5.vtu t_0.3.vtu t_1.vtu t_0.vtu t_0.25.vtu
+numbers '"f.0.25.vtu","f.0.3.vtu"' f.0.3.vtu f.0.25.vtu
+numbers '"x2.9.vtu","x2.10.vtu"' x2.10.vtu x2.9.vtu
+numbers '"00.vtu","08.vtu","0010.vtu"' 0010.vtu 08.vtu 00.vtu
+numbers '"p20260101000000000001.vtu","p20260101000000000002.vtu"' p20260101000000000002.vtu p20260101000000000001.vtu
+numbers '"r_1/flow.vtu","r_2/flow.vtu"' r_2/flow.vtu r_1/flow.vtu
+for pair in 'a.vtu b.vtu' 'a_1.vtu b_2.vtu' 'a1b1.vtu a2b2.vtu' 'a_1.vtu a_x.vtu' 'a_1.vtu a_1.vtu' 'a_1.vtu a_.vtu'; do
+  # shellcheck disable=SC2086  # two words
+  refuse 2 'a file that lists them (.pvtu, .vtm or .pvd)' render $pair -o x.##.png
+done
+for list in '["numbered/run_2.vtu", "a.vtu"]' '[]' '[3]' '["a.vtu", ""]'; do
+  echo "{\"input\": $list, \"output\": \"x.##.png\"}" >list.json
+  refuse 1 'input: expected a path, or a list of paths that differ in one number' render --scene list.json
+done
+
 # What makes no sense.
 refuse 2 'all' render s.pvd --time every
 refuse 2 'or step, or series' render s.pvd --range steps

@@ -16,6 +16,14 @@ for command in render converge info mesh; do
   [ "$(echo "$output" | wc -L)" -le 120 ] || fail "help of $command is too wide"
 done
 accept render -h
+accept -V
+contains '^tetcast [0-9]'
+accept help
+contains 'Usage: tetcast COMMAND'
+for command in render converge info mesh completion; do
+  accept help $command
+  contains "Usage: tetcast $command"
+done
 
 # Quick: no adapter is loaded.
 start=$(date +%s%N)
@@ -23,14 +31,50 @@ for _ in 1 2 3 4 5 6 7 8 9 10; do "$tetcast" --version >/dev/null; done
 [ $((($(date +%s%N) - start) / 10000000)) -le 200 ] || fail "--version takes $((($(date +%s%N) - start) / 10000000)) ms"
 
 refuse 2 'no command'
-refuse 2 "unknown command 'rendre'" rendre x.vtu
+refuse 2 "unknown command 'rendre'; did you mean 'render'?" rendre x.vtu
+refuse 2 "unknown command 'rendre'; did you mean 'render'?" help rendre
+refuse 2 "unknown command 'x.vtu' (see" x.vtu
+touch x.vtu
+refuse 2 "did you mean tetcast render x.vtu?" x.vtu
+rm x.vtu
 refuse 2 "unknown option '--vers'" --vers
 refuse 2 'no input' render
 refuse 2 'no input' info
 refuse 2 'more than one input' render a.vtu b.vtu
+refuse 2 'a file that lists them (.pvtu, .vtm or .pvd)' render a.vtu b.vtu
+refuse 2 'numbered' render a_1.vtu b_2.vtu
+refuse 2 'numbered' render a_1.vtu a_2.vtk
+refuse 2 'numbered' render a_1.vtu a_1.vtu
+refuse 2 'about one step' converge a_1.vtu a_2.vtu -o r
+refuse 2 'only numbers, from 0' render a_1.vtu a_2.vtu --time t=1
 refuse 2 'more than one input' info a.vtu b.vtu
 refuse 2 '--bogus' render a.vtu --bogus
-refuse 2 '--bogus' info a.vtu --bogus
+refuse 2 '--bogus (see' info a.vtu --bogus # nothing is near
+
+# What was meant.
+refuse 2 '--presett; did you mean --preset?' render a.vtu --presett viridis
+refuse 2 '--outptu; did you mean --output?' render a.vtu --outptu=a.png
+refuse 2 '--trehads; did you mean --threads?' converge a.vtu -o r --trehads 2
+refuse 2 '--jsno; did you mean --json?' info a.vtu --jsno
+refuse 2 '--feild; did you mean --field?' mesh a.off -o a.vtu --feild heat
+refuse 2 '-size; did you mean --size?' render a.vtu -size 9x9
+refuse 2 '-output; did you mean --output?' render a.vtu -output a.png
+refuse 2 "did you mean 'viridis'?" render a.vtu --preset virdis
+refuse 2 "did you mean 'gyroid'?" mesh a.off -o a.vtu --field gyriod
+refuse 2 "did you mean 'black'?" render a.vtu --background blak
+for text in 'tolerance: 0.1' '"size": [9,9]' ' '; do # is no scene, and no mesh
+  echo "{$text}" >x.json
+  refuse 1 x.json render x.json
+done
+echo ' {"input": "a.vtu", "output": "a.png"}' >scene.json
+echo '{"color": [[0,1,1,1]], "extinction": [[0,1]]}' >transfer.json
+for command in render 'converge -o r' info; do
+  # shellcheck disable=SC2086  # a list of words
+  refuse 2 "'scene.json' is a scene, not a mesh: render takes it by --scene scene.json" $command scene.json
+  # shellcheck disable=SC2086
+  refuse 2 "'transfer.json' is a transfer function, not a mesh: render takes it by --transfer transfer.json" $command transfer.json
+done
+rm ./*.json
 refuse 2 'option -x' render a.vtu -x
 refuse 2 '--json takes no argument' info a.vtu --json=1
 refuse 2 '-o needs an argument' render a.vtu -o
@@ -47,7 +91,7 @@ for height in 0 -1 inf; do refuse 2 'height' render a.vtu --ortho "$height"; don
 for samples in 0 -1 1.5 65537 x; do refuse 2 'whole number' render a.vtu --samples "$samples"; done
 for threads in -1 1.5 5000 x; do refuse 2 'whole number' render a.vtu --threads "$threads"; done
 for repeat in 0 -1 x; do refuse 2 'whole number' render a.vtu --repeat "$repeat"; done
-for background in 1,1 1,1,1,1,1 2,0,0 -1,0,0 white; do refuse 2 'r,g,b' render a.vtu --background "$background"; done
+for background in 1,1 1,1,1,1,1 2,0,0 -1,0,0 255,255,255 snow '' '#' '#12' '#12345' '#1234567' '#ggg' '#fff '; do refuse 2 'r,g,b' render a.vtu --background "$background"; done
 for range in 1 3,1 1,2,3 a,b; do refuse 2 'LO not above HI' render a.vtu --range "$range"; done
 refuse 2 'viridis' render a.vtu --preset nope
 refuse 2 'uint8' render a.vtu --pixel-type int8

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -444,6 +445,117 @@ static void formats_hold_what_they_should(void **) {
   }
 }
 
+// Nothing is premultiplied twice or not at all where the pixels are read without a library: those of a .bmp, .tga or
+// .ppm lie in the file as they are, the first two from the bottom, blue first.
+static std::vector<double> raw_pixels(const fs::path &path, int64_t width, int64_t height, int channels) {
+  std::ifstream file(path, std::ios::binary);
+  const std::vector<unsigned char> bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const bool bmp = path.extension() == ".bmp", ppm = path.extension() == ".ppm";
+  const int64_t row = bmp ? (width * channels + 3) / 4 * 4 : width * channels;
+  const int64_t start = bmp ? bytes[10] : ppm ? int64_t(bytes.size()) - row * height : 18 + bytes[0];
+  std::vector<double> values;
+  for (int64_t y = 0; y < height; y++)
+    for (int64_t i = 0; i < width * channels; i++) {
+      const int64_t c = i % channels, from = ppm || c == 3 ? i : i - c + 2 - c;
+      values.push_back(bytes[size_t(start + (ppm ? y : height - 1 - y) * row + from)] / 255.0);
+    }
+  return values;
+}
+
+// Whatever OpenImageIO writes here is the picture when it is read back, or is refused: every extension that it knows, with
+// every type of pixel, over every kind of background.
+static void every_format_holds_the_picture_or_is_refused(void **) {
+  const int64_t width = 37, height = 70;
+  std::vector<double> pixels; // smooth, for the formats that lose what is not; with all kinds of alpha
+  for (int64_t y = 0; y < height; y++)
+    for (int64_t x = 0; x < width; x++) {
+      const double alpha = x == 0 ? 0 : x + 1 == width ? 1 : (double(x) + 0.213) / double(width);
+      const double red = (double(y) + 0.317) / double(height); // no halves of a level, whose rounding is free
+      for (const double color : {red, 0.437, 1 - red, 1.0})
+        pixels.push_back(alpha * color);
+    }
+  const double white[4] = {1, 1, 1, 1}, blue[4] = {0.2, 0.3, 0.9, 1}, glass[4] = {0.8, 0.4, 0.1, 0.35},
+               none[4] = {0, 0, 0, 0};
+  std::string accepted, list = OIIO::get_string_attribute("extension_list"); // "tiff:tif,tiff;png:png;…"
+  std::replace(list.begin(), list.end(), ';', ',');
+  std::istringstream entries(list);
+  for (std::string entry; std::getline(entries, entry, ',');) {
+    const std::string extension = entry.substr(entry.find(':') + 1);
+    bool any = false;
+    for (int type = 0; type < 6; type++)
+      for (const double *background : {white, blue, glass, none}) {
+        clear_folder();
+        const fs::path path = folder / ("a." + extension);
+        TetcastImageDesc desc = tetcast_image_desc_default();
+        desc.pixel_type = TetcastPixelType(type);
+        std::copy(background, background + 4, desc.background);
+        const TetcastStatus check = tetcast_image_check(context, path.c_str(), &desc);
+        const TetcastStatus status = write(path, pixels, width, height, TetcastPixelType(type), background);
+        assert_int_equal(check, status);
+        if (status != TETCAST_OK) {
+          assert_int_equal(status, TETCAST_ERROR_ARGUMENT);
+          assert_int_equal(file_count(), 0);
+          continue;
+        }
+        any = true;
+        const Picture picture = read_back(path);
+        const bool lossy = extension[0] == 'j' || extension == "webp";
+        const bool rgbe = extension == "hdr" || extension == "rgbe"; // 8 bits of the largest of three
+        if (picture.spec.nchannels == 3 && background[3] < 1)
+          assert_false(last_warning.empty());
+        compare(picture, pixels, background, lossy ? 0.05 : rgbe ? 0x1p-7 : 1e-7);
+        if (extension == "bmp" || extension == "tga" || extension == "ppm") {
+          Picture raw = picture;
+          raw.values = raw_pixels(path, width, height, picture.spec.nchannels);
+          compare(raw, pixels, background, 1e-7);
+        }
+      }
+    if (any)
+      accepted += extension + " ";
+  }
+  for (const char *name : {"png ", "exr ", "tif ", "tiff ", "jpg ", "jpeg ", "bmp ", "tga ", "webp ", "ppm ", "hdr "})
+    if (accepted.find(name) == std::string::npos)
+      fail_msg("%swas not written; only %s", name, accepted.c_str());
+  for (const char *name : {"pgm", "pbm", "pfm", "tx", "sxr", "gif", "psd"}) // promise something else, or were not tried
+    if (accepted.find(name) != std::string::npos)
+      fail_msg("%s was written", name);
+}
+
+static void webp_is_for_opaque_backgrounds(void **) {
+  clear_folder();
+  std::vector<double> pixels = sample_pixels(8, 8);
+  const double glass[4] = {1, 1, 1, 0.999};
+  assert_int_equal(write(folder / "a.webp", pixels, 8, 8, TETCAST_PIXEL_DEFAULT, glass), TETCAST_ERROR_ARGUMENT);
+  assert_non_null(std::strstr(last_error.c_str(), "opaque background"));
+  assert_int_equal(file_count(), 0);
+  assert_int_equal(write(folder / "a.webp", pixels, 8, 8, TETCAST_PIXEL_DEFAULT), TETCAST_OK);
+}
+
+static void colors_beyond_a_type_do_not_become_infinite(void **) {
+  clear_folder();
+  const struct {
+    double color;
+    TypeDesc::BASETYPE standard;
+    bool half, radiance;
+  } cases[] = {{0, TypeDesc::HALF, true, true},        {0.1, TypeDesc::HALF, true, true},
+               {65504, TypeDesc::HALF, true, true},    {65600, TypeDesc::FLOAT, false, true},
+               {-70000, TypeDesc::FLOAT, false, false}, {1e-9, TypeDesc::FLOAT, true, true},
+               {-0.5, TypeDesc::HALF, true, false},    {3e38, TypeDesc::FLOAT, false, false}};
+  for (const auto &one : cases) {
+    std::vector<double> pixels = {0, 0, one.color, 1};
+    assert_int_equal(write(folder / "a.exr", pixels, 1, 1, TETCAST_PIXEL_DEFAULT), TETCAST_OK);
+    const Picture picture = read_back(folder / "a.exr");
+    assert_int_equal(picture.spec.format.basetype, one.standard);
+    assert_true(std::fabs(picture.values[2] - one.color) <= std::fabs(one.color) * 0x1p-11);
+    const TetcastStatus half = write(folder / "b.exr", pixels, 1, 1, TETCAST_PIXEL_HALF);
+    assert_int_equal(half, one.half ? TETCAST_OK : TETCAST_ERROR_ARGUMENT);
+    if (!one.half)
+      assert_non_null(std::strstr(last_error.c_str(), "65504"));
+    const TetcastStatus radiance = write(folder / "a.hdr", pixels, 1, 1, TETCAST_PIXEL_DEFAULT);
+    assert_int_equal(radiance, one.radiance ? TETCAST_OK : TETCAST_ERROR_ARGUMENT);
+  }
+}
+
 static void jpeg_is_near_a_smooth_picture(void **) {
   clear_folder();
   const int64_t width = 64, height = 48;
@@ -558,7 +670,7 @@ static void impossible_targets_are_refused(void **) {
   expect_failure(folder / "a", TETCAST_ERROR_ARGUMENT, "extension");
   expect_failure(folder / "a.b" / "a", TETCAST_ERROR_ARGUMENT, "extension");
   expect_failure(folder / "a.", TETCAST_ERROR_ARGUMENT, "extension");
-  for (const char *name : {"a.vtu", "a.null", "a.term", "a.psd", "a.sgi", "a.gif"})
+  for (const char *name : {"a.vtu", "a.null", "a.term", "a.psd", "a.sgi", "a.gif", "a.pgm", "a.tx", "a.sxr"})
     expect_failure(folder / name, TETCAST_ERROR_ARGUMENT, "not supported");
   expect_failure(folder / (std::string(300, 'x') + ".png"), TETCAST_ERROR_IO, "name too long");
   assert_int_equal(file_count(), 0);
@@ -637,6 +749,37 @@ static void links_are_followed(void **) {
   assert_int_equal(write(folder / "link.png", pixels, 4, 4, TETCAST_PIXEL_DEFAULT), TETCAST_OK);
   assert_true(fs::is_symlink(folder / "link.png"));
   assert_int_equal(read_back(folder / "real.png").spec.width, 4);
+
+  // Also to where there is nothing yet, link by link.
+  clear_folder();
+  fs::create_directory(folder / "deep");
+  fs::create_symlink("deep/next.png", folder / "link.png");
+  fs::create_symlink("../end.png", folder / "deep" / "next.png");
+  assert_int_equal(tetcast_image_check(context, (folder / "link.png").c_str(), nullptr), TETCAST_OK);
+  assert_int_equal(write(folder / "link.png", pixels, 4, 4, TETCAST_PIXEL_DEFAULT), TETCAST_OK);
+  assert_true(fs::is_symlink(folder / "link.png") && fs::is_symlink(folder / "deep" / "next.png"));
+  assert_false(fs::is_symlink(folder / "end.png"));
+  assert_int_equal(read_back(folder / "end.png").spec.width, 4);
+  fs::create_symlink("missing/end.png", folder / "lost.png");
+  expect_failure(folder / "lost.png", TETCAST_ERROR_IO, "folder does not exist");
+  fs::create_symlink("loop.png", folder / "loop.png");
+  assert_int_equal(write(folder / "loop.png", pixels, 4, 4, TETCAST_PIXEL_DEFAULT), TETCAST_ERROR_IO);
+}
+
+static void replaced_files_keep_their_mode(void **) {
+  clear_folder();
+  std::vector<double> pixels = sample_pixels(4, 4);
+  const mode_t before = umask(022);
+  for (const mode_t mode : {0600, 0640, 0666, 0604}) {
+    std::ofstream(folder / "a.png") << "old";
+    assert_int_equal(chmod((folder / "a.png").c_str(), mode), 0);
+    assert_int_equal(write(folder / "a.png", pixels, 4, 4, TETCAST_PIXEL_DEFAULT), TETCAST_OK);
+    struct stat status;
+    assert_int_equal(stat((folder / "a.png").c_str(), &status), 0);
+    assert_int_equal(status.st_mode & 07777, mode);
+    assert_true(status.st_size > 10);
+  }
+  umask(before);
 }
 
 // A limit on the size of files stands for a full disk: every write beyond it fails, wherever in the file that is.
@@ -678,6 +821,9 @@ static void full_disk_leaves_the_old_file_and_no_word_on_stderr(void **) {
 int main() {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(formats_hold_what_they_should), cmocka_unit_test(the_error_is_a_fifth_channel), cmocka_unit_test(groups_are_channels),
+      cmocka_unit_test(every_format_holds_the_picture_or_is_refused),
+      cmocka_unit_test(webp_is_for_opaque_backgrounds),
+      cmocka_unit_test(colors_beyond_a_type_do_not_become_infinite),
       cmocka_unit_test(jpeg_is_near_a_smooth_picture),
       cmocka_unit_test(doubles_come_back_bit_for_bit),
       cmocka_unit_test(tiff_states_how_alpha_is_meant),
@@ -689,6 +835,7 @@ int main() {
       cmocka_unit_test(pictures_too_large_for_a_format_are_refused),
       cmocka_unit_test(check_leaves_nothing),
       cmocka_unit_test(links_are_followed),
+      cmocka_unit_test(replaced_files_keep_their_mode),
       cmocka_unit_test(full_disk_leaves_the_old_file_and_no_word_on_stderr),
   };
   return cmocka_run_group_tests_name("image", tests, setup, teardown);

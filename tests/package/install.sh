@@ -113,6 +113,10 @@ unset LD_LIBRARY_PATH
 if [ -x "$prefix/bin/tetcast" ]; then
   quietly "$prefix/bin/tetcast" --version
   [ -n "$(find "$prefix" -name 'tetcast.1*')" ] || fail "the manual page is not installed"
+  for file in bash-completion/completions/tetcast zsh/site-functions/_tetcast fish/vendor_completions.d/tetcast.fish; do
+    [ -s "$prefix/share/$file" ] || fail "share/$file is not installed"
+  done
+  "$prefix/bin/tetcast" completion bash | cmp - "$prefix/share/bash-completion/completions/tetcast" || fail "another completion is installed"
   mesh=$(find "$source/meshes" -name '*.vtu' | sort | head -n 1)
   case " $ADAPTERS " in
     *" vtk "*" openimageio "*)

@@ -22,7 +22,8 @@ void NAME(TC_LANES_NAME)(const EdgePoint *a, const EdgePoint *b, int64_t count, 
   for (int64_t i = 0; i < count; i += TC_LANES) {
     const TcLanePoints p = load(a + i, count - i), q = load(b + i, count - i);
     TcVec e[3];
-    tc_edges(tc_all(), (const TcLanePoints *const[]){&p, &p, &p}, (const TcLanePoints *const[]){&q, &q, &q}, e);
+    static const int same[3] = {0, 0, 0};
+    tc_edges(tc_all(), &p, &q, same, same, e);
     for (int l = 0; l < TC_LANES && i + l < count; ++l) edge[i + l] = (double)TC_AT(e[i / TC_LANES % 3], l);
   }
 }

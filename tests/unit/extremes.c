@@ -34,7 +34,6 @@ typedef struct Way {
 static const Way ways[] = {
     {"scalar", TETCAST_TRAVERSAL_SHELL, TETCAST_ISA_SCALAR, TETCAST_INTEGRATOR_EXACT, 1, TETCAST_POINT, 0},
     {"faces", TETCAST_TRAVERSAL_FACES, TETCAST_ISA_AUTO, TETCAST_INTEGRATOR_EXACT, 1, TETCAST_POINT, 0},
-    {"baseline", TETCAST_TRAVERSAL_SHELL, TETCAST_ISA_BASELINE, TETCAST_INTEGRATOR_EXACT, 1, TETCAST_POINT, 0},
     {"avx2", TETCAST_TRAVERSAL_SHELL, TETCAST_ISA_AVX2, TETCAST_INTEGRATOR_EXACT, 1, TETCAST_POINT, 0},
     {"avx512", TETCAST_TRAVERSAL_SHELL, TETCAST_ISA_AVX512, TETCAST_INTEGRATOR_EXACT, 1, TETCAST_POINT, 0},
     {"cells, scalar", TETCAST_TRAVERSAL_SHELL, TETCAST_ISA_SCALAR, TETCAST_INTEGRATOR_EXACT, 1, TETCAST_CELL, 0},
@@ -63,8 +62,7 @@ static double *render(const Way *way, const Units *units) {
   TetcastField *field = way->association == TETCAST_POINT
                             ? field_of(fixture.context, cube.values, cube.vertex_count, TETCAST_POINT)
                             : field_of(fixture.context, cell_values, cube.cell_count, TETCAST_CELL);
-  TetcastVolume *volume = volume_of(fixture.context, mesh, way->traversal);
-  assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
+  Body body = {volume_of(fixture.context, mesh, way->traversal), field};
   const double v = units->value, k = units->extinction, c = units->color;
   const double color[][4] = {{0, c, 0.5 * c, 0.25 * c}, {0.9 * v, 0.2 * c, 0.3 * c, c}},
                extinction[][2] = {{0.1 * v, 0.001 * k}, {0.6 * v, 3 * k}};
@@ -75,7 +73,7 @@ static double *render(const Way *way, const Units *units) {
   desc.color_count = desc.extinction_count = 2;
   TetcastTransferFunction *transfer = NULL;
   assert_int_equal(tetcast_transfer_function_create(fixture.context, &desc, &transfer), TETCAST_OK);
-  TetcastScene *scene = scene_of(fixture.context, volume, transfer);
+  TetcastScene *scene = scene_of(fixture.context, &body, transfer);
   const double m = units->length;
   const TetcastCamera camera = {.eye = {2.1 * m, 1.7 * m, 3.3 * m},
                                 .target = {0.5 * m, 0.5 * m, 0.5 * m},
@@ -104,8 +102,7 @@ static double *render(const Way *way, const Units *units) {
   tetcast_frame_destroy(&frame);
   tetcast_scene_destroy(&scene);
   tetcast_transfer_function_destroy(&transfer);
-  tetcast_volume_destroy(&volume);
-  tetcast_field_destroy(&field);
+  body_destroy(&body);
   tetcast_mesh_destroy(&mesh);
   free(cell_values);
   cube_destroy(&cube);
@@ -253,8 +250,7 @@ static void ranges_wider_than_a_double(void **state) {
           values[i] = at;
         TetcastMesh *mesh = cube_mesh(fixture.context, &cube);
         TetcastField *field = field_of(fixture.context, values, count, way->association);
-        TetcastVolume *volume = volume_of(fixture.context, mesh, way->traversal);
-        assert_int_equal(tetcast_volume_set_field(volume, field), TETCAST_OK);
+        Body body = {volume_of(fixture.context, mesh, way->traversal), field};
         const double color[][4] = {{-limits[l], 0, 0, 0}, {limits[l], 1, 1, 1}},
                      extinction[][2] = {{-limits[l], 0}, {limits[l], 4}};
         TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
@@ -268,7 +264,7 @@ static void ranges_wider_than_a_double(void **state) {
                                       .up = {0, 1, 0},
                                       .projection = TETCAST_ORTHOGRAPHIC,
                                       .height = 0.5};
-        TetcastScene *scene = scene_of(fixture.context, volume, transfer);
+        TetcastScene *scene = scene_of(fixture.context, &body, transfer);
         TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
         frame_desc.width = frame_desc.height = 3;
         TetcastFrame *frame = NULL;
@@ -290,9 +286,7 @@ static void ranges_wider_than_a_double(void **state) {
         tetcast_scene_destroy(&scene);
         tetcast_transfer_function_destroy(&transfer);
         if (!huge) { /* a preset over it, too */
-          assert_int_equal(tetcast_transfer_function_create_preset(fixture.context, volume, "viridis", -limits[l],
-                                                                   limits[l], &transfer),
-                           TETCAST_OK);
+          transfer = preset_of(fixture.context, &body, "viridis", -limits[l], limits[l]);
           int64_t knots;
           const double *found = tetcast_transfer_function_extinction(transfer, &knots);
           for (int64_t i = 0; i < 2 * knots; ++i)
@@ -300,8 +294,7 @@ static void ranges_wider_than_a_double(void **state) {
           assert_true(found[2 * knots - 1] > 0.5 && found[2 * knots - 1] < 5);
           tetcast_transfer_function_destroy(&transfer);
         }
-        tetcast_volume_destroy(&volume);
-        tetcast_field_destroy(&field);
+        body_destroy(&body);
         tetcast_mesh_destroy(&mesh);
         free(values);
         cube_destroy(&cube);
@@ -320,7 +313,7 @@ static void opacity_and_unit_distance(void **state) {
     Cube cube = cube_create(CELLS, 0.5);
     for (int64_t p = 0; p < 3 * cube.vertex_count; ++p)
       cube.vertices[p] *= ends[i];
-    TetcastVolume *volume = cube_volume(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
+    Body body = cube_body(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
     const double m = ends[i];
     const TetcastCamera camera = camera_of(2.1 * m, 1.7 * m, 3.3 * m, 0.5 * m, 0.5 * m, 0.5 * m);
     for (int j = 0; j < ENDS; ++j) {
@@ -339,24 +332,22 @@ static void opacity_and_unit_distance(void **state) {
                                                                                             : TETCAST_ERROR_ARGUMENT);
         if (status)
           continue;
-        double *pixels = picture(fixture.context, volume, transfer, &camera, W, H, NULL);
+        double *pixels = picture(fixture.context, &body, transfer, &camera, W, H, NULL);
         check_pixels(&ways[0], &ordinary, pixels, VALUES);
         free(pixels);
         tetcast_transfer_function_destroy(&transfer);
       }
     }
     /* A preset is half opaque on average, whatever the unit. */
-    TetcastTransferFunction *transfer = NULL;
-    assert_int_equal(tetcast_transfer_function_create_preset(fixture.context, volume, "magma", 0, 1, &transfer),
-                     TETCAST_OK);
-    double *pixels = picture(fixture.context, volume, transfer, &camera, W, H, NULL), most = 0;
+    TetcastTransferFunction *transfer = preset_of(fixture.context, &body, "magma", 0, 1);
+    double *pixels = picture(fixture.context, &body, transfer, &camera, W, H, NULL), most = 0;
     check_pixels(&ways[0], &ordinary, pixels, VALUES);
     for (int p = 0; p < W * H; ++p)
       most = fmax(most, pixels[4 * p + 3]);
     assert_true(i == 0 || (most > 0.4 && most < 0.95));
     free(pixels);
     tetcast_transfer_function_destroy(&transfer);
-    tetcast_volume_destroy(&volume);
+    body_destroy(&body);
     cube_destroy(&cube);
   }
   fixture_end(&fixture);
@@ -371,9 +362,9 @@ static void distances_and_heights(void **state) {
     Cube cube = cube_create(CELLS, 0.5);
     for (int64_t p = 0; p < 3 * cube.vertex_count; ++p)
       cube.vertices[p] *= ends[i];
-    TetcastVolume *volume = cube_volume(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
+    Body body = cube_body(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
     TetcastTransferFunction *transfer = gray_of(fixture.context, 1 / ends[i]);
-    TetcastScene *scene = scene_of(fixture.context, volume, transfer);
+    TetcastScene *scene = scene_of(fixture.context, &body, transfer);
     TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
     frame_desc.width = 15;
     frame_desc.height = 1;
@@ -406,7 +397,7 @@ static void distances_and_heights(void **state) {
     tetcast_frame_destroy(&frame);
     tetcast_scene_destroy(&scene);
     tetcast_transfer_function_destroy(&transfer);
-    tetcast_volume_destroy(&volume);
+    body_destroy(&body);
     cube_destroy(&cube);
   }
   fixture_end(&fixture);
@@ -423,10 +414,9 @@ static void coefficients_lengths_and_samples(void **state) {
       Cube cube = cube_create(CELLS, 0.5);
       for (int64_t p = 0; p < 3 * cube.vertex_count; ++p)
         cube.vertices[p] *= ends[i];
-      TetcastVolume *volume =
-          cube_volume(fixture.context, &cube, traversal ? TETCAST_TRAVERSAL_FACES : TETCAST_TRAVERSAL_SHELL);
+      Body body = cube_body(fixture.context, &cube, traversal ? TETCAST_TRAVERSAL_FACES : TETCAST_TRAVERSAL_SHELL);
       TetcastScene *scene = NULL;
-      assert_int_equal(tetcast_scene_create(fixture.context, volume, &scene), TETCAST_OK);
+      assert_int_equal(tetcast_scene_create(fixture.context, body.volume, &scene), TETCAST_OK);
       const double m = ends[i];
       TetcastCamera camera = camera_of(0.5 * m, 0.5 * m, 3 * m, 0.5 * m, 0.5 * m, 0.5 * m);
       camera.projection = TETCAST_ORTHOGRAPHIC;
@@ -482,7 +472,7 @@ static void coefficients_lengths_and_samples(void **state) {
         }
       }
       tetcast_scene_destroy(&scene);
-      tetcast_volume_destroy(&volume);
+      body_destroy(&body);
       cube_destroy(&cube);
     }
   }

@@ -282,13 +282,16 @@ static void everything(TetcastContext *context, const Cube *cube, TetcastTravers
   TetcastField *field = NULL;
   IN_HOST(status = tetcast_field_create(context, &field_desc, &field));
   assert_int_equal(status, TETCAST_OK);
-  IN_HOST(status = tetcast_volume_set_field(volume, field));
+  TetcastScene *scene = NULL;
+  IN_HOST(status = tetcast_scene_create(context, volume, &scene));
+  assert_int_equal(status, TETCAST_OK);
+  IN_HOST(status = tetcast_scene_set_field(scene, field));
   assert_int_equal(status, TETCAST_OK);
   numbers(mesh, field);
   other_fields(context, mesh, cube);
   cut(context, cube);
   TetcastTransferFunction *preset = NULL, *ramp = NULL;
-  IN_HOST(status = tetcast_transfer_function_create_preset(context, volume, "magma", 0, 1, &preset));
+  IN_HOST(status = tetcast_scene_create_preset(scene, "magma", 0, 1, &preset));
   assert_int_equal(status, TETCAST_OK);
   const double color[][4] = {{0, 1, 0.3, 0}, {0.4, 0, 1, 0}, {1, 0.5, 0.7, 1}},
                opacity[][2] = {{0.1, 0}, {0.45, 1e-3}, {0.5, 0.9}, {0.9, 1}};
@@ -299,9 +302,6 @@ static void everything(TetcastContext *context, const Cube *cube, TetcastTravers
   desc.opacity_count = 4;
   desc.unit_distance = 0.3;
   IN_HOST(status = tetcast_transfer_function_create(context, &desc, &ramp));
-  assert_int_equal(status, TETCAST_OK);
-  TetcastScene *scene = NULL;
-  IN_HOST(status = tetcast_scene_create(context, volume, &scene));
   assert_int_equal(status, TETCAST_OK);
   IN_HOST(status = tetcast_scene_set_transfer_function(scene, preset));
   assert_int_equal(status, TETCAST_OK);
@@ -322,7 +322,7 @@ static void everything(TetcastContext *context, const Cube *cube, TetcastTravers
   desc.unit_distance = (double)NAN;
   IN_HOST(status = tetcast_transfer_function_create(context, &desc, &none));
   assert_int_equal(status, TETCAST_ERROR_ARGUMENT);
-  IN_HOST(status = tetcast_transfer_function_create_preset(context, volume, "magma", (double)NAN, 1, &none));
+  IN_HOST(status = tetcast_scene_create_preset(scene, "magma", (double)NAN, 1, &none));
   assert_int_equal(status, TETCAST_ERROR_ARGUMENT);
   IN_HOST(tetcast_context_message(context, TETCAST_SEVERITY_INFO, "%s", "a message"));
   IN_HOST(tetcast_scene_destroy(&scene));
@@ -420,14 +420,14 @@ static uint64_t one_picture(int threads, TetcastTraversal traversal, int n) {
   sum = UINT64_C(1469598103934665603);
   TetcastContext *context = context_with(threads);
   Cube cube = cube_create(n, 0.5);
-  TetcastVolume *volume = cube_volume(context, &cube, traversal);
+  Body body = cube_body(context, &cube, traversal);
   TetcastTransferFunction *transfer = transfer_of(context, 1);
   const TetcastCamera camera = camera_of(2.1, 1.7, 3.3, 0.5, 0.5, 0.5);
-  double *pixels = picture(context, volume, transfer, &camera, W, H, NULL);
+  double *pixels = picture(context, &body, transfer, &camera, W, H, NULL);
   note(pixels, W * H * 4 * sizeof *pixels);
   free(pixels);
   tetcast_transfer_function_destroy(&transfer);
-  tetcast_volume_destroy(&volume);
+  body_destroy(&body);
   cube_destroy(&cube);
   tetcast_context_destroy(&context);
   return sum;

@@ -232,12 +232,12 @@ static void whole_picture(Run *run, const Kind *kind) {
   field_desc.ownership = kind->ownership;
   TetcastField *field = (TetcastField *)&cube;
   MAKE(run, field, tetcast_field_create(context, &field_desc, &field));
-  CALL(run, tetcast_volume_set_field(volume, field));
   TetcastScene *scene = (TetcastScene *)&cube;
   MAKE(run, scene, tetcast_scene_create(context, volume, &scene));
+  CALL(run, tetcast_scene_set_field(scene, field));
   TetcastTransferFunction *transfer = (TetcastTransferFunction *)&cube;
   if (kind->preset)
-    MAKE(run, transfer, tetcast_transfer_function_create_preset(context, volume, "magma", 0, 1, &transfer));
+    MAKE(run, transfer, tetcast_scene_create_preset(scene, "magma", 0, 1, &transfer));
   else
     narrow_transfer(run, &transfer, kind->narrow);
   if (kind->coefficients)
@@ -246,7 +246,7 @@ static void whole_picture(Run *run, const Kind *kind) {
     CALL(run, tetcast_scene_set_transfer_function(scene, transfer));
   render(run, kind, scene);
   if (kind->replaced) { /* the scene is prepared anew */
-    CALL(run, tetcast_volume_set_field(volume, field));
+    CALL(run, tetcast_scene_set_field(scene, field));
     if (kind->coefficients)
       set_coefficients(run, scene, field);
     else

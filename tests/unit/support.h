@@ -264,6 +264,17 @@ static inline TetcastScene *scene_of(TetcastContext *context, const Body *body, 
   return scene;
 }
 
+/* The preset of this name over [low, high], for the body. */
+static inline TetcastTransferFunction *preset_of(TetcastContext *context, const Body *body, const char *name, double low, double high) {
+  TetcastScene *scene = NULL;
+  TetcastTransferFunction *transfer = NULL;
+  assert_int_equal(tetcast_scene_create(context, body->volume, &scene), TETCAST_OK);
+  assert_int_equal(tetcast_scene_set_field(scene, body->field), TETCAST_OK);
+  assert_int_equal(tetcast_scene_create_preset(scene, name, low, high, &transfer), TETCAST_OK);
+  tetcast_scene_destroy(&scene);
+  return transfer;
+}
+
 /* The default description, with the instruction set that the environment variable TETCAST_TEST_ISA names by its number: the
  * same test serves all kernels. */
 static inline TetcastRenderDesc render_desc(void) {

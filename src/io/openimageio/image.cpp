@@ -8,9 +8,11 @@
 #include <cstring>
 #include <memory>
 #include <new>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <OpenImageIO/imageio.h>
@@ -120,14 +122,19 @@ constexpr Format formats[] = {{"png", TypeDesc::UINT8, limited(1000000)}, {"open
                               {"webp", TypeDesc::UINT8, 16383},           {"pnm", TypeDesc::UINT8, limited(1 << 20)},
                               {"hdr", TypeDesc::FLOAT, 1 << 20}};
 
+// Names that OpenImageIO takes for one of these formats, but that promise what would not be in the file: grey values,
+// single bits or floating-point numbers, tiled textures, several views.
+constexpr const char *misleading[] = {"pgm", "pbm", "pfm", "tx", "env", "sm", "vsm", "sxr", "mxr"};
+
 const Format &find_format(TetcastContext *context, const char *path, std::unique_ptr<ImageOutput> &output) {
   const std::string extension = extension_of(path);
   if (extension.empty())
     fail(context, TETCAST_ERROR_ARGUMENT, path, "the name has no extension to tell the format by, such as .png");
   output = ImageOutput::create(extension);
   (void)OIIO::geterror(); // or it would be printed at the end of the process
+  const bool fitting = std::find(std::begin(misleading), std::end(misleading), extension) == std::end(misleading);
   for (const Format &format : formats)
-    if (output && !std::strcmp(output->format_name(), format.name))
+    if (output && fitting && !std::strcmp(output->format_name(), format.name))
       return format;
   if (extension == "exr") // OpenEXR starts threads before it knows what for
     std::thread([] {}).join();
@@ -152,23 +159,6 @@ const char *type_name(TetcastPixelType type) {
   }
 }
 
-TypeDesc requested_type(TetcastPixelType type, const Format &format) {
-  switch (type) {
-  case TETCAST_PIXEL_UINT8:
-    return TypeDesc::UINT8;
-  case TETCAST_PIXEL_UINT16:
-    return TypeDesc::UINT16;
-  case TETCAST_PIXEL_HALF:
-    return TypeDesc::HALF;
-  case TETCAST_PIXEL_FLOAT:
-    return TypeDesc::FLOAT;
-  case TETCAST_PIXEL_DOUBLE:
-    return TypeDesc::DOUBLE;
-  default:
-    return format.standard;
-  }
-}
-
 bool is_float(TypeDesc type) {
   return type.basetype == TypeDesc::HALF || type.basetype == TypeDesc::FLOAT || type.basetype == TypeDesc::DOUBLE;
 }
@@ -183,6 +173,67 @@ double component(const Pixels &pixels, int64_t y, int64_t i) {
   }
   std::memcpy(&narrow, at, 4);
   return narrow;
+}
+
+// The least and the largest finite colour of the picture, 0 included.
+std::pair<double, double> color_range(const Pixels &pixels) {
+  std::pair<double, double> range = {0, 0};
+  for (int64_t y = 0; y < pixels.height; y++)
+    for (int64_t i = 0; i < 4 * pixels.width; i++) {
+      const double value = component(pixels, y, i);
+      if (i % 4 == 3 || !std::isfinite(value))
+        continue;
+      range.first = std::min(range.first, value);
+      range.second = std::max(range.second, value);
+    }
+  return range;
+}
+
+constexpr double half_largest = 65504, half_least = 0x1p-14; // with all of its bits
+
+// A format's own type, or float where half would make infinities or nothing of the colours.
+TypeDesc suitable_type(TypeDesc standard, const Pixels &pixels) {
+  if (standard != TypeDesc::HALF || pixels.colors() == 0)
+    return standard;
+  const auto range = color_range(pixels);
+  const double largest = std::max(-range.first, range.second);
+  return largest <= half_largest && (largest == 0 || largest >= half_least) ? TypeDesc::HALF : TypeDesc::FLOAT;
+}
+
+TypeDesc requested_type(TetcastPixelType type, const Format &format, const Pixels &pixels) {
+  switch (type) {
+  case TETCAST_PIXEL_UINT8:
+    return TypeDesc::UINT8;
+  case TETCAST_PIXEL_UINT16:
+    return TypeDesc::UINT16;
+  case TETCAST_PIXEL_HALF:
+    return TypeDesc::HALF;
+  case TETCAST_PIXEL_FLOAT:
+    return TypeDesc::FLOAT;
+  case TETCAST_PIXEL_DOUBLE:
+    return TypeDesc::DOUBLE;
+  default:
+    return suitable_type(format.standard, pixels);
+  }
+}
+
+// What of the picture a format or type can't hold, "": nothing.
+std::string unfit(const char *format, TypeDesc type, const Pixels &pixels, bool opaque) {
+  if (!std::strcmp(format, "webp") && !opaque) // OpenImageIO's writer divides them by alpha, which we have done
+    return "the format takes colours over an opaque background alone; .png and .tif hold alpha";
+  const bool radiance = !std::strcmp(format, "hdr");
+  if (pixels.colors() == 0 || (type != TypeDesc::HALF && !radiance))
+    return "";
+  const auto range = color_range(pixels);
+  std::ostringstream reason;
+  if (radiance && range.first < 0)
+    reason << "the format holds no values below 0, as " << range.first << " is; .exr and .tif do";
+  else if (radiance && range.second >= 0x1p127)
+    reason << "the format holds no values as large as " << range.second;
+  else if (!radiance && std::max(-range.first, range.second) > half_largest)
+    reason << "pixels of type half hold no values beyond 65504, as " << std::max(-range.first, range.second)
+           << " is; float does";
+  return reason.str();
 }
 
 template <class T> T quantize(double value, double top) {
@@ -315,7 +366,7 @@ void write_picture(TetcastContext *context, const char *path, const Pixels &pixe
   if (const int error = file.open(path))
     fail(context, TETCAST_ERROR_IO, path, error_text(error));
   proxy = std::make_unique<tetcast::CheckedProxy>(file.file(), file.temporary());
-  TypeDesc type = requested_type(desc.pixel_type, format);
+  TypeDesc type = requested_type(desc.pixel_type, format, pixels);
   if (pixels.extras_only && type == TypeDesc::HALF && output->supports("channelformats"))
     type = TypeDesc::FLOAT; // as each of them is
   if (!pixels.extras.empty() && (!is_float(type) || !output->supports("nchannels")))
@@ -326,6 +377,9 @@ void write_picture(TetcastContext *context, const char *path, const Pixels &pixe
     fail(context, TETCAST_ERROR_ARGUMENT, path,
          std::string("the channel ") + pixels.extras[0].name + " does not fit into pixels of type half in this format");
   const bool opaque = desc.background[3] >= 1;
+  const std::string reason_against = unfit(format.name, type, pixels, opaque);
+  if (!reason_against.empty())
+    fail(context, TETCAST_ERROR_ARGUMENT, path, reason_against);
   ImageSpec spec = picture_spec(*output, pixels, type, opaque);
   void *pointer = static_cast<OIIO::Filesystem::IOProxy *>(proxy.get());
   spec.attribute("oiio:ioproxy", TypeDesc::PTR, &pointer);
@@ -339,7 +393,7 @@ void write_picture(TetcastContext *context, const char *path, const Pixels &pixe
       fail(context, TETCAST_ERROR_ARGUMENT, path,
            std::string("the format cannot hold pixels of type ") + type_name(desc.pixel_type));
     }
-    if (publish && !output->supports("alpha") && (is_float(type) || !opaque))
+    if (!output->supports("alpha") && (is_float(type) || !opaque))
       tetcast_context_message(context, TETCAST_SEVERITY_WARNING,
                               "image '%s': the format has no alpha; the picture lies over black", path);
     done = write_rows(*output, pixels, desc.background);

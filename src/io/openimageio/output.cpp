@@ -7,22 +7,51 @@
 #include <memory>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 namespace tetcast {
+namespace {
+
+// The file that a path means which does not exist yet: where a symbolic link, or a chain of them, points to.
+std::string follow_links(std::string path) {
+  char target[4096];
+  for (int i = 0; i < 40; i++) { // as many as the system follows
+    const ssize_t length = ::readlink(path.c_str(), target, sizeof target);
+    if (length <= 0 || length == ssize_t(sizeof target))
+      break;
+    const size_t slash = path.rfind('/');
+    const std::string folder = slash == std::string::npos || target[0] == '/' ? "" : path.substr(0, slash + 1);
+    path = folder + std::string(target, size_t(length));
+  }
+  return path;
+}
+
+// Marks a new file as being written: who finds it without the lock may take it for the left-over of a killed process.
+// False: somebody did so before we had the lock.
+bool lock(int descriptor) {
+  struct stat status;
+  const bool locked = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  return locked ? ::fstat(descriptor, &status) != 0 || status.st_nlink > 0 : errno != EWOULDBLOCK;
+}
+
+} // namespace
 
 NewFile::~NewFile() {
   if (m_file)
     std::fclose(m_file);
   if (!m_temporary.empty())
     ::unlink(m_temporary.c_str());
+  if (m_lock >= 0)
+    ::close(m_lock);
 }
 
 int NewFile::open(const std::string &path) {
   m_target = path;
   struct stat status;
-  if (::stat(path.c_str(), &status) == 0) {
+  const bool exists = ::stat(path.c_str(), &status) == 0;
+  if (exists) {
     if (S_ISDIR(status.st_mode))
       return EISDIR;
     if (!S_ISREG(status.st_mode)) // renaming would replace a device or pipe
@@ -35,6 +64,8 @@ int NewFile::open(const std::string &path) {
     m_target = real.get();
   } else if (errno != ENOENT) {
     return errno;
+  } else {
+    m_target = follow_links(path);
   }
 
   const size_t slash = m_target.rfind('/');
@@ -46,13 +77,25 @@ int NewFile::open(const std::string &path) {
   int descriptor = -1;
   do {
     m_temporary = folder + ".tetcast-" + std::to_string(::getpid()) + "-" + std::to_string(counter++) + extension;
-    descriptor = ::open(m_temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    descriptor =
+        ::open(m_temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, exists ? status.st_mode & 0777 : 0666);
+    if (descriptor >= 0 && !lock(descriptor)) {
+      ::close(descriptor);
+      descriptor = -1;
+      errno = EEXIST;
+    }
   } while (descriptor < 0 && errno == EEXIST);
   if (descriptor < 0) {
     const int error = errno;
     m_temporary.clear();
     return error;
   }
+  if (exists) { // what is replaced keeps its mode and, where we may, its owner: a private file stays private
+    if (::fchown(descriptor, status.st_uid, status.st_gid) != 0)
+      status.st_mode &= 0777;
+    (void)::fchmod(descriptor, status.st_mode & 07777);
+  }
+  m_lock = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
   m_file = ::fdopen(descriptor, "w+b");
   if (!m_file) {
     const int error = errno;

@@ -13,8 +13,9 @@
 
 namespace tetcast {
 
-// A file that will be named `path` (symbolic links followed) once it is complete. Until then it is a hidden file beside
-// it with the same extension, which goes away with the object.
+// A file that will be named `path` (symbolic links followed, also to where there is nothing yet) once it is complete.
+// It keeps the mode of the file that it replaces. Until then it is a hidden file beside it with the same extension,
+// which goes away with the object, and which a lock (flock) tells from those that killed processes have left.
 class NewFile {
 public:
   NewFile() = default;
@@ -32,6 +33,7 @@ public:
 private:
   std::string m_target, m_temporary;
   std::FILE *m_file = nullptr;
+  int m_lock = -1; // the same file's descriptor once more, which holds the lock until the file has its name
 };
 
 // What OpenImageIO's formats write through. It always claims success, as several of the libraries below answer a failed

@@ -18,7 +18,7 @@ void add_grid(const Reading &reading, const std::string &block, vtkDataSet *data
   }
   Grid grid = vtkUnstructuredGrid::SafeDownCast(dataset);
   if (!grid) grid = to_hexahedra(place, dataset);
-  if (grid) contents->pieces.push_back({place, grid});
+  if (grid) contents->pieces.push_back({place, grid, block.empty() ? -1 : static_cast<int>(contents->blocks.size()) - 1});
   else ++contents->surfaces;
 }
 

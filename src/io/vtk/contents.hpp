@@ -23,6 +23,7 @@ using Grid = vtkSmartPointer<vtkUnstructuredGrid>;
 struct Piece {
   std::string place; // for messages: the file, and the block where there are several
   Grid grid;
+  int block = -1; // the number of its block among all there are; -1: it is of none
 };
 
 // What a file holds, of that what was asked for.

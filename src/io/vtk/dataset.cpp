@@ -12,6 +12,7 @@
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkPointData.h>
+#include <vtkTypeInt32Array.h>
 #include <vtkUnstructuredGrid.h>
 
 using namespace tcv;
@@ -122,6 +123,29 @@ static Contents read_pieces_of(const Reading &reading) {
   return contents;
 }
 
+static bool has_arrays(vtkDataSetAttributes *attributes) {
+  for (int i = 0; i < attributes->GetNumberOfArrays(); ++i) {
+    if (attributes->GetArray(i) && !is_ghost_array(attributes->GetArrayName(i) ? attributes->GetArrayName(i) : "")) return true;
+  }
+  return false;
+}
+
+// Where nothing but its blocks tells one part of a mesh from another, the number of each cell's block is an array.
+static void number_blocks(std::vector<Piece> *pieces) {
+  bool several = false;
+  for (const Piece &piece : *pieces) {
+    if (piece.block < 0 || has_arrays(piece.grid->GetPointData()) || has_arrays(piece.grid->GetCellData())) return;
+    several = several || piece.block != pieces->front().block;
+  }
+  for (size_t i = 0; several && i < pieces->size(); ++i) {
+    const auto numbers = vtkSmartPointer<vtkTypeInt32Array>::New();
+    numbers->SetName("block");
+    numbers->SetNumberOfValues((*pieces)[i].grid->GetNumberOfCells());
+    numbers->FillValue((*pieces)[i].block);
+    (*pieces)[i].grid->GetCellData()->AddArray(numbers);
+  }
+}
+
 static void warn_of_cut(const TetcastDataset *dataset) {
   const TetcastCutInfo &info = dataset->tetrahedra.info;
   const struct {
@@ -156,6 +180,8 @@ static void read_dataset(TetcastContext *context, const char *path, const Tetcas
   dataset->times = std::move(contents.times);
   dataset->step = contents.step;
   dataset->unread = std::move(contents.unread);
+  if (!desc.only || std::string(desc.only) == "block")
+    number_blocks(&contents.pieces);
   const Grid grid = unite(reading, &contents.pieces, &dataset->pieces, &dataset->unread);
   const int64_t points = grid->GetNumberOfPoints(), cells = grid->GetNumberOfCells();
   const TetcastDatasetPieces &pieces = dataset->pieces;

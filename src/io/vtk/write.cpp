@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <climits>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -157,27 +160,50 @@ int why_not_written(const char *path, unsigned long kibibytes) {
   return error;
 }
 
+// What a path means: an existing file through all links, or where a link to nothing leads.
+std::string followed(std::string path) {
+  char target[PATH_MAX];
+  if (realpath(path.c_str(), target)) return target;
+  for (int i = 0; i < 40; ++i) { // as many links as the system follows
+    const ssize_t length = readlink(path.c_str(), target, sizeof target);
+    if (length <= 0) break;
+    const size_t slash = target[0] == '/' ? std::string::npos : path.rfind('/');
+    path = (slash == std::string::npos ? "" : path.substr(0, slash + 1)) + std::string(target, static_cast<size_t>(length));
+  }
+  return path;
+}
+
+// Its name and its lock (flock) tell the left-over of a killed process, which has no lock, from what is being written.
 class Temporary {
 public:
-  explicit Temporary(const char *target) : target_(target) {
+  explicit Temporary(const char *target) : target_(followed(target)) {
     static std::atomic<unsigned> counter{0};
-    struct stat status;
-    if (stat(target, &status) == 0 && !S_ISREG(status.st_mode)) {
+    struct stat former;
+    const bool exists = stat(target, &former) == 0;
+    if (exists && !S_ISREG(former.st_mode)) {
       fail(TETCAST_ERROR_IO, "%s: can't be written: is %s", target,
-           S_ISDIR(status.st_mode) ? "a folder" : "not a regular file");
+           S_ISDIR(former.st_mode) ? "a folder" : "not a regular file");
     }
-    for (;;) {
-      path_ = target_ + ".part" + std::to_string(getpid()) + "-" + std::to_string(counter++);
-      const int file = open(path_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-      if (file >= 0) {
-        close(file);
-        return;
-      }
-      if (errno != EEXIST) fail(TETCAST_ERROR_IO, "%s: can't be written: %s", target, std::strerror(errno));
+    const size_t slash = target_.rfind('/');
+    const std::string folder = slash == std::string::npos ? "" : target_.substr(0, slash + 1);
+    while (lock_ < 0) {
+      path_ = folder + ".tetcast-" + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".vtu";
+      lock_ = open(path_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, exists ? former.st_mode & 0777 : 0666);
+      if (lock_ < 0 && errno != EEXIST) fail(TETCAST_ERROR_IO, "%s: can't be written: %s", target, std::strerror(errno));
+      struct stat own;
+      const bool locked = lock_ >= 0 && (flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK);
+      if (locked && (fstat(lock_, &own) != 0 || own.st_nlink > 0)) continue;
+      if (lock_ >= 0) close(lock_); // taken for a left-over before it had its lock
+      lock_ = -1;
+    }
+    if (exists) { // what is replaced keeps its mode and, where we may, its owner
+      const bool owned = fchown(lock_, former.st_uid, former.st_gid) == 0;
+      fchmod(lock_, former.st_mode & (owned ? 07777 : 0777));
     }
   }
   ~Temporary() {
     if (!path_.empty()) unlink(path_.c_str());
+    if (lock_ >= 0) close(lock_);
   }
   Temporary(const Temporary &) = delete;
   Temporary &operator=(const Temporary &) = delete;
@@ -193,6 +219,7 @@ public:
 
 private:
   std::string target_, path_;
+  int lock_ = -1; // the file's descriptor, which holds the lock
 };
 
 static void write_grid(const char *path, vtkUnstructuredGrid *grid, const Capture &capture) {

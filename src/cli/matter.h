@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Meshes without a scalar, drawn as uniform matter: the picture shows how far rays go through it. */
+#ifndef TETCAST_CLI_MATTER_H
+#define TETCAST_CLI_MATTER_H
+
+#include <stdbool.h>
+
+#include <tetcast/dataset.h>
+#include <tetcast/tetcast.h>
+
+/* Whether a dataset has no array that could be drawn: none at all, or only numbers of blocks, materials and the like
+ * over its cells. *label becomes the name of those that colour tells apart, valid while the dataset lives; NULL: there
+ * are none. */
+bool matter_wanted(const TetcastDataset *dataset, const char **label);
+
+/* A scalar that is 1 at each vertex. */
+TetcastStatus matter_field(TetcastContext *context, const TetcastMesh *mesh, TetcastField **field);
+
+/* What is needed of matter that has labels, while its field is there. */
+typedef struct Matter {
+  double extinction; /* by which rays through the mesh are half opaque on average */
+  double *labels;    /* [count], ascending; at most as many as colours can tell apart for somebody who looks for it */
+  int count;
+} Matter;
+
+TetcastStatus matter_measure(TetcastContext *context, const TetcastVolume *volume, const TetcastMesh *mesh,
+                             const TetcastField *labels, Matter *matter);
+
+/* The same extinction for all labels, and a colour for each; preset NULL: colours that neighbours in the list don't
+ * share, else that colour map over the range. The scene has the labels for its field. */
+TetcastStatus matter_shade(TetcastContext *context, const TetcastScene *scene, const Matter *matter, const char *preset,
+                           const double range[2], TetcastTransferFunction **transfer_function);
+
+void matter_release(Matter *matter);
+
+#endif
