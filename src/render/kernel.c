@@ -306,6 +306,8 @@ static State *prepare(const TcJob *job, TcWorker *worker) {
     p->active = tc_none();
     p->starting = p->waiting = 0;
     state->packet[i].under_way = false;
+    /* What is kept from packet to packet begins anew: no bit of a tile depends on the one before. */
+    memset(&state->packet[i].gather, 0, sizeof state->packet[i].gather);
 #if !TC_SINGLE
     if (job->coefficients) {
       double *memory = (double *)(void *)((char *)state + sizeof *state) + (size_t)i * tc_groups_size(job->coefficients);
@@ -368,7 +370,8 @@ static void place_samples(const TcJob *job, const TcGround *ground, const TcWide
   TcLines *lines = &placed->lines;
   const double samples_x = job->samples_x, samples_y = job->samples_y;
   const TcWide across = *column + 0.5, down = *row + 0.5;
-  const TcWide u = across * (2 / ((double)job->width * samples_x)) - 1, v = 1 - down * (2 / ((double)job->height * samples_y));
+  const double width = (double)job->width * samples_x, height = (double)job->height * samples_y;
+  const TcWide u = (across + across - width) / width, v = (height - (down + down)) / height; /* rounded once */
   if (job->screen) {
     lines->x = across / samples_x - job->screen->x0;
     lines->y = down / samples_y - job->screen->y0;

@@ -31,8 +31,8 @@ static void tc_view_lines(const TcView *view, const TcWide *u, const TcWide *v, 
     lines->direction[k] = view->orthographic ? tc_set_wide(view->forward[k]) : view->forward[k] + shift;
   }
   if (view->orthographic) return;
-  const TcWide *d = lines->direction, inverse = 1 / tc_sqrt_wide(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-  for (int k = 0; k < 3; ++k) lines->direction[k] *= inverse;
+  const TcWide *d = lines->direction, length = tc_sqrt_wide(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  for (int k = 0; k < 3; ++k) lines->direction[k] /= length;
 }
 
 /* In ray space, eye + offset + along · direction as origin + rest, to twice the precision: whatever `along` was rounded to, the point is on the ray,

@@ -43,7 +43,8 @@ void plain_end(const PlainLight *light, double rgba[4]) {
 PlainRay plain_ray(const TcView *view, int64_t width, int64_t height, int samples_x, int samples_y, int64_t x, int64_t y, int i,
                    const TcScreen *screen) {
   const double column = (double)(x * samples_x + i % samples_x) + 0.5, row = (double)(y * samples_y + i / samples_x) + 0.5;
-  const double u = 2 * column / (double)(width * samples_x) - 1, v = 1 - 2 * row / (double)(height * samples_y);
+  const double across = (double)(width * samples_x), down = (double)(height * samples_y);
+  const double u = (2 * column - across) / across, v = (down - 2 * row) / down;
   PlainRay ray = {.line = {.end = INFINITY}};
   double direction[3], length = 0;
   for (int k = 0; k < 3; ++k) {
@@ -264,7 +265,7 @@ static void gather_groups(Gather *gather, const Face face[2], uint32_t cell, dou
     for (int i = 0; i < 2; ++i) a[i] = ends[0][i] * (length * c->scale[0]) * c->scale[1];
     if (isnan(a[0]) || isnan(a[1])) continue;
     const TcMoments m = tc_segment_moments(a[0], a[1]);
-    const double radiance = 0.25 * length * (ends[1][0] * m.m0 + ends[1][1] * m.m1);
+    const double radiance = length * (c->emission_scale * ends[1][0] * m.m0 + c->emission_scale * ends[1][1] * m.m1);
     if (isnan(radiance)) continue;
     long double *sums = &gather->groups[2 * g];
     sums[0] += expl(-sums[1]) * radiance;
