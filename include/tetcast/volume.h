@@ -43,7 +43,12 @@ TETCAST_API TetcastVolumeDesc tetcast_volume_desc_default(void);
  *
  * `desc` may be NULL (defaults). Cells with a vertex twice have no inside and are left out, as are
  * cells whose four vertices an earlier cell has; a warning counts them, and another one faces of three cells or more.
- * A mesh without cells is TETCAST_ERROR_DATA. */
+ * A mesh without cells is TETCAST_ERROR_DATA.
+ *
+ * Cells need not share vertices to be neighbours: vertices of different cells are one place if they lie within four
+ * units in the last place of the mesh's largest coordinate, in the precision that the mesh has. So files in which each
+ * cell brings its own points have no gaps. Values stay each vertex's own: a point field may jump between such cells.
+ * This costs memory, 16 bytes for each tetrahedron, and time only where there are such vertices. */
 TETCAST_API TetcastStatus tetcast_volume_create(TetcastContext *context, const TetcastMesh *mesh, const TetcastVolumeDesc *desc,
                                                 TetcastVolume **volume);
 
@@ -54,6 +59,7 @@ typedef struct TetcastVolumeInfo {
   int64_t vertices;        /* of the mesh */
   int64_t tetrahedra;      /* that can be crossed: the mesh's less those left out */
   int64_t left_out;        /* cells left out, see tetcast_volume_create() */
+  int64_t welded;          /* vertices that lie where another one does, see tetcast_volume_create() */
   int64_t shell_faces;     /* faces (shell) or cells (faces) that Embree holds */
   size_t bytes;            /* resident memory: arrays of the volume and what Embree holds for it */
   double bounds[6];        /* of its cells: xmin, xmax, ymin, ymax, zmin, zmax */

@@ -24,6 +24,10 @@ static TetcastStatus check_field(const TetcastVolume *volume, const List *list, 
     return tc_error(volume->context, TETCAST_ERROR_ARGUMENT, "%s has %" PRId64 " values, the mesh %" PRId64 " %s", list->name,
                     field->values.count, wanted, field->association == TETCAST_POINT ? "vertices" : "tetrahedra");
   }
+  if (tc_field_jumps(volume, field)) {
+    return tc_error(volume->context, TETCAST_ERROR_ARGUMENT, "%s: points of different cells at one place have different values, which only a transfer function can show",
+                    list->name);
+  }
   double range[2] = {0, 0};
   if (extinction) tc_field_range(field, range, NULL);
   if (!(range[0] < 0)) return TETCAST_OK;

@@ -95,6 +95,8 @@ static void add(TcRowsCache *cache, TcRows *rows) {
 typedef struct Take {
   TcRows *rows;
   const TetcastField *const *fields; /* [width] */
+  TetcastAssociation association;    /* of the rows */
+  TcTask *fill;
   const uint32_t *source;            /* [count]: where the mesh has them */
   double scale;
   bool clamp;
@@ -120,6 +122,28 @@ static bool take_corner_rows(void *data, int64_t begin, int64_t end, int worker)
   return true;
 }
 
+/* Corners from a field of points, where vertices at one place have values of their own. */
+static bool take_vertex_corner_rows(void *data, int64_t begin, int64_t end, int worker) {
+  (void)worker;
+  const Take *take = data;
+  for (int64_t i = begin; i < end; ++i) {
+    for (int k = 0; k < 4; ++k) {
+      const double value = kept(take, tc_field_at(take->fields[0], take->rows->volume->corner_vertices[i][k]));
+      if (take->rows->is_double) ((double *)take->rows->data)[4 * i + k] = value;
+      else ((float *)take->rows->data)[4 * i + k] = (float)value;
+    }
+  }
+  return true;
+}
+
+bool tc_field_jumps(const TetcastVolume *volume, const TetcastField *field) {
+  for (int64_t i = 0; i < volume->weld_count && field->association == TETCAST_POINT; ++i) {
+    const double a = tc_field_at(field, volume->welds[i].vertex), b = tc_field_at(field, volume->welds[i].with);
+    if (a != b && (isfinite(a) || isfinite(b))) return true;
+  }
+  return false;
+}
+
 static bool take_rows(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   const Take *take = data;
@@ -141,10 +165,9 @@ static TetcastStatus create(const TetcastVolume *volume, Take *take, int width, 
   TetcastContext *context = volume->context;
   TcRows *rows;
   if (!tc_allocate_array(context, (void **)&rows, 1, sizeof *rows, "field")) return TETCAST_ERROR_MEMORY;
-  const TetcastAssociation association = take->fields[0]->association;
-  const bool point = association == TETCAST_POINT;
-  *rows = (TcRows){.volume = volume, .association = association, .width = width, .count = point ? volume->vertex_count : volume->cell_count};
-  const int fields = association == TETCAST_CORNER ? 1 : width;
+  const bool point = take->association == TETCAST_POINT;
+  *rows = (TcRows){.volume = volume, .association = take->association, .width = width, .count = point ? volume->vertex_count : volume->cell_count};
+  const int fields = take->association == TETCAST_CORNER ? 1 : width;
   for (int k = 0; k < fields; ++k) rows->is_double |= take->fields[k]->values.type != TETCAST_TYPE_FLOAT32;
   const size_t size = (size_t)width * (rows->is_double ? sizeof(double) : sizeof(float));
   /* Room for one row more, for lanes that rest, and for a vector that reaches beyond the last. */
@@ -155,13 +178,13 @@ static TetcastStatus create(const TetcastVolume *volume, Take *take, int width, 
   memset((char *)rows->data + (size_t)rows->count * size, 0, (1 + 128 / size) * size);
   take->rows = rows;
   take->source = point ? volume->vertex_source : volume->adjacency.source;
-  tc_parallel_for(context, rows->count, GRAIN, association == TETCAST_CORNER ? take_corner_rows : take_rows, take, NULL);
+  tc_parallel_for(context, rows->count, GRAIN, take->fill, take, NULL);
   *out = rows;
   return TETCAST_OK;
 }
 
 TetcastStatus tc_rows_of_fields(const TetcastVolume *volume, const TetcastField *const *fields, int width, TcRows **rows) {
-  Take take = {.fields = fields, .scale = 1, .clamp = true};
+  Take take = {.fields = fields, .association = fields[0]->association, .fill = take_rows, .scale = 1, .clamp = true};
   const TetcastStatus status = create(volume, &take, width, rows);
   if (!status) add(volume->rows, *rows);
   return status;
@@ -220,9 +243,14 @@ TetcastStatus tc_rows_of_scalar(const TetcastVolume *volume, const TetcastField 
   const double largest = fmax(fabs(range[0]), fabs(range[1]));
   const bool tiny = largest > 0 && largest < ldexp(1, -TC_TINY_FIELD);
   const int exponent = tiny ? -TC_TINY_FIELD : largest > TC_LARGEST_SCALAR ? TC_HUGE_FIELD : 0;
-  Take take = {.fields = &field, .scale = ldexp(1, -exponent)};
+  Take take = {.fields = &field, .association = field->association, .fill = take_rows, .scale = ldexp(1, -exponent)};
+  if (field->association == TETCAST_CORNER) take.fill = take_corner_rows;
+  if (tc_field_jumps(volume, field)) {
+    take.association = TETCAST_CORNER;
+    take.fill = take_vertex_corner_rows;
+  }
   TcRows *rows;
-  const TetcastStatus status = create(volume, &take, field->association == TETCAST_CORNER ? 4 : 1, &rows);
+  const TetcastStatus status = create(volume, &take, take.association == TETCAST_CORNER ? 4 : 1, &rows);
   if (status) return status;
   rows->exponent = exponent;
   rows->serial = serial;

@@ -43,7 +43,10 @@ size_t tc_rows_cache_bytes(TcRowsCache *cache); /* of the rows that there are */
  * the volume's mesh had vertices or cells (TETCAST_ERROR_ARGUMENT). */
 TetcastStatus tc_rows_of_scalar(const TetcastVolume *volume, const TetcastField *field, TcRows **rows);
 
-/* `width` fields of one association next to each other, as they are. Their numbers of values have been checked. */
+/* Whether a field of points has different values for vertices at one place. Its rows are corners then. */
+bool tc_field_jumps(const TetcastVolume *volume, const TetcastField *field);
+
+/* `width` fields of one association next to each other, as they are. Their numbers of values have been checked, and that none jumps. */
 TetcastStatus tc_rows_of_fields(const TetcastVolume *volume, const TetcastField *const *fields, int width, TcRows **rows);
 
 /* One user more. */

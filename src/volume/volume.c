@@ -108,6 +108,62 @@ static bool take_corners(void *data, int64_t begin, int64_t end, int worker) {
   return true;
 }
 
+static bool take_corner_vertices(void *data, int64_t begin, int64_t end, int worker) {
+  (void)worker;
+  const Take *take = data;
+  for (int64_t i = begin; i < end; ++i) {
+    uint32_t v[4];
+    tc_mesh_cell(take->mesh, take->volume->adjacency.source[i], v);
+    for (int k = 0; k < 4; ++k) {
+      const uint32_t own = take->rank[v[k]];
+      const int place = (own > take->rank[v[0]]) + (own > take->rank[v[1]]) + (own > take->rank[v[2]]) + (own > take->rank[v[3]]);
+      take->volume->corner_vertices[i][place] = v[k];
+    }
+  }
+  return true;
+}
+
+/* The mesh's vertices in faces of one cell, in the volume's order: cells meet there if their vertices lie at one place. */
+static TetcastStatus shell_vertices(const TetcastVolume *volume, uint32_t **out, int64_t *count) {
+  uint8_t *used;
+  const int64_t shell = volume->adjacency.shell_count, most = 3 * shell < volume->vertex_count ? 3 * shell : volume->vertex_count;
+  if (!tc_allocate_array(volume->context, (void **)&used, volume->vertex_count, 1, "vertices of the boundary")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(volume->context, (void **)out, most, sizeof **out, "vertices of the boundary")) {
+    tc_release(volume->context, used);
+    return TETCAST_ERROR_MEMORY;
+  }
+  memset(used, 0, (size_t)volume->vertex_count);
+  for (int64_t i = 0; i < shell; ++i) {
+    for (int k = 0; k < 3; ++k) used[volume->adjacency.shell[i].vertex[k]] = 1;
+  }
+  *count = 0;
+  for (int64_t i = 0; i < volume->vertex_count; ++i) {
+    if (used[i]) (*out)[(*count)++] = volume->vertex_source[i];
+  }
+  tc_release(volume->context, used);
+  return TETCAST_OK;
+}
+
+/* Lets cells meet at vertices that lie at one place. Where all vertices are the cells' common ones, all this takes is a look at those of the boundary. */
+static TetcastStatus join_cells(TetcastVolume *volume, Take *take) {
+  uint32_t *vertices = NULL;
+  int64_t count = 0;
+  TetcastStatus status = shell_vertices(volume, &vertices, &count);
+  if (!status) status = tc_weld(take->mesh, vertices, count, &volume->welds, &volume->weld_count);
+  tc_release(volume->context, vertices);
+  if (status || volume->weld_count == 0) return status;
+  for (int64_t i = 0; i < volume->weld_count; ++i) take->rank[volume->welds[i].vertex] = take->rank[volume->welds[i].with];
+  tc_adjacency_clear(&volume->adjacency);
+  status = tc_adjacency_build(take->mesh, take->rank, true, NULL, &volume->adjacency);
+  const int64_t cells = volume->adjacency.cell_count;
+  if (status) return status;
+  if (!tc_allocate_array(volume->context, (void **)&volume->corner_vertices, cells, sizeof *volume->corner_vertices, "corners")) {
+    return TETCAST_ERROR_MEMORY;
+  }
+  tc_parallel_for(volume->context, cells, GRAIN, take_corner_vertices, take, NULL);
+  return TETCAST_OK;
+}
+
 static TetcastStatus order_corners(TetcastVolume *volume, Take *take) {
   const int64_t count = volume->adjacency.cell_count;
   if (!tc_allocate_array(volume->context, (void **)&volume->corner_order, count, 1, "corners")) return TETCAST_ERROR_MEMORY;
@@ -124,6 +180,7 @@ static TetcastStatus take_cells(TetcastVolume *volume, const TetcastMesh *mesh, 
   tc_parallel_for(volume->context, volume->vertex_count, GRAIN, take_ranks, &take, NULL);
   TcAdjacency *adjacency = &volume->adjacency;
   TetcastStatus status = tc_adjacency_build(mesh, take.rank, true, progress, adjacency);
+  if (!status) status = join_cells(volume, &take);
   if (!status && corners) status = order_corners(volume, &take);
   tc_release(volume->context, take.rank);
   if (status || !shell_only(volume)) return status;
@@ -150,6 +207,7 @@ static void describe(TetcastVolume *volume, const TetcastMesh *mesh) {
   TetcastVolumeInfo *info = &volume->info;
   info->vertices = volume->vertex_count;
   info->tetrahedra = volume->cell_count;
+  info->welded = volume->weld_count;
   info->left_out = volume->mesh_cell_count - volume->cell_count;
   memcpy(info->bounds, mesh->bounds, sizeof info->bounds);
   info->shell_faces = shell_only(volume) ? volume->adjacency.shell_count : volume->cell_count;
@@ -215,6 +273,8 @@ void tc_volume_destroy(TetcastVolume *volume) {
   tc_release(context, volume->positions);
   tc_release(context, volume->vertex_source);
   tc_release(context, volume->corner_order);
+  tc_release(context, volume->corner_vertices);
+  tc_release(context, volume->welds);
   tc_rows_cache_destroy(volume->rows);
   tc_release(context, volume);
 }
@@ -229,5 +289,6 @@ void tc_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info) {
                 (adjacency->shell ? shell * sizeof *adjacency->shell : 0) +
                 (adjacency->vertices ? cells * sizeof *adjacency->vertices : 0) +
                 (adjacency->source ? cells * sizeof *adjacency->source : 0) + (volume->corner_order ? cells : 0) +
+                (volume->corner_vertices ? cells * sizeof *volume->corner_vertices : 0) + (size_t)volume->weld_count * sizeof *volume->welds +
                 tc_rows_cache_bytes(volume->rows);
 }

@@ -5,6 +5,7 @@
 #include <tetcast/volume.h>
 
 #include "mesh/adjacency.h"
+#include "mesh/weld.h"
 #include "volume/clusters.h"
 #include "volume/embree.h"
 
@@ -33,6 +34,11 @@ struct TetcastVolume {
   void *positions;
   bool positions_are_double;
   uint32_t *vertex_source; /* [vertex_count]: the mesh's vertex */
+
+  /* Vertices that lie where others do have become one with these (mesh/weld.h). Values stay each cell's own: NULL where there are no such vertices. */
+  TcWeld *welds;                 /* [weld_count], of the mesh's vertices */
+  int64_t weld_count;
+  uint32_t (*corner_vertices)[4]; /* [cell_count]: for each of a cell's vertices in ascending order, the mesh's vertex that the cell has there */
 
   uint8_t *corner_order; /* [cell_count]: two bits for each of a cell's vertices in ascending order, which of the mesh's it is; NULL: not asked for */
 

@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "mesh/weld.h"
+
+#include <float.h>
+#include <math.h>
+
+/* Places in a grid whose cells are four times as wide as the tolerance, by a hash. A vertex that lies alone is in the list of its grid cell. */
+typedef struct Grid {
+  const TetcastMesh *mesh;
+  double tolerance;
+  uint64_t mask;
+  uint32_t *first; /* [mask + 1]: a vertex's number in the list of candidates, plus one; 0: none */
+  uint32_t *next;  /* [count] */
+} Grid;
+
+enum { NONE = 0 };
+
+double tc_weld_tolerance(const TetcastMesh *mesh) {
+  double largest = 0;
+  for (int k = 0; k < 6; ++k) largest = fmax(largest, fabs(mesh->bounds[k]));
+  const double unit = mesh->vertices.type == TETCAST_TYPE_FLOAT64 ? DBL_EPSILON : (double)FLT_EPSILON;
+  int exponent;
+  frexp(largest, &exponent); /* below 2^exponent, where units are half of the epsilon times that */
+  return largest > 0 ? ldexp(4 * 0.5 * unit, exponent) : 0;
+}
+
+static uint64_t hash_of(const Grid *grid, const double at[3]) {
+  uint64_t hash = 0;
+  for (int k = 0; k < 3; ++k) {
+    hash = (hash ^ (uint64_t)(int64_t)at[k]) * UINT64_C(0x9E3779B97F4A7C15);
+    hash ^= hash >> 29;
+  }
+  return hash & grid->mask;
+}
+
+static bool is_near(const Grid *grid, uint32_t vertex, const double p[3]) {
+  double q[3];
+  tc_mesh_vertex(grid->mesh, vertex, q);
+  return fabs(p[0] - q[0]) <= grid->tolerance && fabs(p[1] - q[1]) <= grid->tolerance && fabs(p[2] - q[2]) <= grid->tolerance;
+}
+
+/* The one of the vertices in the grid that lies within the tolerance of p, as its number plus one; the latest, if there are several. */
+static uint32_t find(const Grid *grid, const uint32_t *vertices, const double p[3]) {
+  const double width = 4 * grid->tolerance;
+  double low[3], high[3], at[3];
+  for (int k = 0; k < 3; ++k) {
+    low[k] = floor((p[k] - grid->tolerance) / width);
+    high[k] = floor((p[k] + grid->tolerance) / width);
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    bool seen = false; /* with another corner */
+    for (int k = 0; k < 3; ++k) {
+      at[k] = corner >> k & 1 ? high[k] : low[k];
+      seen = seen || (corner >> k & 1 && high[k] == low[k]);
+    }
+    for (uint32_t i = seen ? NONE : grid->first[hash_of(grid, at)]; i != NONE; i = grid->next[i - 1]) {
+      if (is_near(grid, vertices[i - 1], p)) return i;
+    }
+  }
+  return NONE;
+}
+
+static void add(Grid *grid, uint32_t number, const double p[3]) {
+  double at[3];
+  for (int k = 0; k < 3; ++k) at[k] = floor(p[k] / (4 * grid->tolerance));
+  uint32_t *first = &grid->first[hash_of(grid, at)];
+  grid->next[number - 1] = *first;
+  *first = number;
+}
+
+/* Fills with[i] for those that lie where an earlier one does, NONE for others; how many. */
+static int64_t find_all(Grid *grid, const uint32_t *vertices, int64_t count, uint32_t *with) {
+  int64_t found = 0;
+  for (int64_t i = 0; i < count; ++i) {
+    double p[3];
+    tc_mesh_vertex(grid->mesh, vertices[i], p);
+    with[i] = find(grid, vertices, p);
+    if (with[i] == NONE) add(grid, (uint32_t)i + 1, p);
+    else ++found;
+  }
+  return found;
+}
+
+/* Takes back what would let a cell have a vertex twice. `place`: for each of the mesh's vertices its number among the candidates plus one. */
+static int64_t keep_thin_cells(const TetcastMesh *mesh, const uint32_t *place, uint32_t *with) {
+  int64_t taken_back = 0;
+  for (int64_t i = 0; i < mesh->tetrahedra.count; ++i) {
+    uint32_t v[4], own[4], is[4];
+    tc_mesh_cell(mesh, i, v);
+    for (int k = 0; k < 4; ++k) {
+      own[k] = place[v[k]];
+      is[k] = own[k] != NONE && with[own[k] - 1] != NONE ? with[own[k] - 1] : own[k];
+    }
+    for (int k = 1; k < 4; ++k) {
+      for (int j = 0; j < k; ++j) {
+        if (is[j] == NONE || is[j] != is[k] || own[j] == own[k]) continue;
+        const int late = with[own[j] - 1] != NONE ? j : k; /* one of them at least was welded */
+        with[own[late] - 1] = NONE;
+        is[late] = own[late];
+        ++taken_back;
+      }
+    }
+  }
+  return taken_back;
+}
+
+static TetcastStatus weld(Grid *grid, const uint32_t *vertices, int64_t count, uint32_t *with, TcWeld **welds, int64_t *weld_count) {
+  const TetcastMesh *mesh = grid->mesh;
+  int64_t found = find_all(grid, vertices, count, with);
+  if (found == 0) return TETCAST_OK;
+  uint32_t *place;
+  if (!tc_allocate_array(mesh->context, (void **)&place, mesh->vertices.count, sizeof *place, "vertices at one place")) return TETCAST_ERROR_MEMORY;
+  memset(place, 0, (size_t)mesh->vertices.count * sizeof *place);
+  for (int64_t i = 0; i < count; ++i) place[vertices[i]] = (uint32_t)i + 1;
+  found -= keep_thin_cells(mesh, place, with);
+  tc_release(mesh->context, place);
+  if (found == 0) return TETCAST_OK;
+  if (!tc_allocate_array(mesh->context, (void **)welds, found, sizeof **welds, "vertices at one place")) return TETCAST_ERROR_MEMORY;
+  for (int64_t i = 0; i < count; ++i) {
+    if (with[i] != NONE) (*welds)[(*weld_count)++] = (TcWeld){vertices[i], vertices[with[i] - 1]};
+  }
+  return TETCAST_OK;
+}
+
+TetcastStatus tc_weld(const TetcastMesh *mesh, const uint32_t *vertices, int64_t count, TcWeld **welds, int64_t *weld_count) {
+  TetcastContext *context = mesh->context;
+  Grid grid = {.mesh = mesh, .tolerance = tc_weld_tolerance(mesh), .mask = 1};
+  *welds = NULL;
+  *weld_count = 0;
+  if (!(grid.tolerance > 0)) return TETCAST_OK;
+  while (grid.mask < 2 * (uint64_t)count) grid.mask *= 2;
+  uint32_t *with = NULL;
+  TetcastStatus status = TETCAST_ERROR_MEMORY;
+  if (tc_allocate_array(context, (void **)&grid.first, (int64_t)grid.mask, sizeof *grid.first, "vertices at one place") &&
+      tc_allocate_array(context, (void **)&grid.next, count, sizeof *grid.next, "vertices at one place") &&
+      tc_allocate_array(context, (void **)&with, count, sizeof *with, "vertices at one place")) {
+    memset(grid.first, 0, (size_t)grid.mask * sizeof *grid.first);
+    --grid.mask;
+    status = weld(&grid, vertices, count, with, welds, weld_count);
+  }
+  tc_release(context, grid.first);
+  tc_release(context, grid.next);
+  tc_release(context, with);
+  return status;
+}
