@@ -5,6 +5,7 @@
 #include <getopt.h>
 #include <math.h>
 #include <poll.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -23,7 +24,16 @@ static struct {
   bool refused; /* a warning was an error */
   char **warnings; /* that were shown, without their digits */
   int count, capacity;
+  bool held;
+  pthread_t holder;
+  struct Message *kept; /* of other threads */
+  int kept_count, kept_capacity;
 } messages;
+
+typedef struct Message {
+  enum { MESSAGE_ERROR, MESSAGE_WARNING, MESSAGE_NOTE } kind;
+  char *place, *text;
+} Message;
 
 void cli_set_quiet(bool quiet) {
   messages.quiet = quiet;
@@ -65,19 +75,25 @@ static void show(const char *kind, const char *place, const char *text) {
   free(line);
 }
 
-static void show_error(const char *place, const char *text) {
-  flockfile(stderr);
-  if (!cli_interrupted() && !messages.failed)
-    show("error", place, text);
-  messages.failed = true;
-  funlockfile(stderr);
+/* Keeps a message for later where another thread holds them; false: it is to be shown. */
+static bool keep(int kind, const char *place, const char *text) {
+  if (!messages.held || pthread_equal(messages.holder, pthread_self()))
+    return false;
+  messages.kept =
+      cli_grow(messages.kept, messages.kept_count, &messages.kept_capacity, sizeof *messages.kept);
+  messages.kept[messages.kept_count++] =
+      (Message){kind, place ? cli_duplicate(place) : NULL, cli_duplicate(text)};
+  return true;
 }
 
-void cli_messages_hold(bool hold) {
-  if (hold)
-    flockfile(stderr);
-  else
-    funlockfile(stderr);
+static void show_error(const char *place, const char *text) {
+  flockfile(stderr);
+  if (!keep(MESSAGE_ERROR, place, text)) {
+    if (!cli_interrupted() && !messages.failed)
+      show("error", place, text);
+    messages.failed = true;
+  }
+  funlockfile(stderr);
 }
 
 /* Whether a warning of these words has been shown. */
@@ -103,9 +119,38 @@ static void show_warning(const char *text) {
   if (messages.strict) {
     messages.refused = true;
     show_error(messages.place, text);
+  } else if (keep(MESSAGE_WARNING, NULL, text)) {
+    /* later */
   } else if (!messages.quiet && !(messages.once && is_repeated(text))) {
     show("warning", NULL, text);
   }
+  funlockfile(stderr);
+}
+
+static void show_note(const char *text) {
+  flockfile(stderr);
+  if (!keep(MESSAGE_NOTE, NULL, text) && !messages.quiet && !messages.refused && !messages.failed)
+    show("note", NULL, text);
+  funlockfile(stderr);
+}
+
+void cli_messages_hold(bool hold) {
+  flockfile(stderr);
+  messages.held = hold;
+  messages.holder = pthread_self();
+  for (int i = 0; !hold && i < messages.kept_count; i++) {
+    Message *message = &messages.kept[i];
+    if (message->kind == MESSAGE_ERROR)
+      show_error(message->place, message->text);
+    else if (message->kind == MESSAGE_WARNING)
+      show_warning(message->text);
+    else
+      show_note(message->text);
+    free(message->place);
+    free(message->text);
+  }
+  if (!hold)
+    messages.kept_count = 0;
   funlockfile(stderr);
 }
 
@@ -160,10 +205,7 @@ void cli_note(const char *format, ...) {
   va_start(list, format);
   char *text = print_list(format, list);
   va_end(list);
-  flockfile(stderr);
-  if (!messages.quiet && !messages.refused && !messages.failed)
-    show("note", NULL, text);
-  funlockfile(stderr);
+  show_note(text);
   free(text);
 }
 

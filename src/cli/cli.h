@@ -35,7 +35,7 @@ int cli_verdict(int code);
 void cli_warn_once(void);
 bool cli_quiet(void);
 
-/* While a thread holds them, the others wait with their messages. */
+/* While a thread holds them, messages of the others are kept, to be shown when it lets go. */
 void cli_messages_hold(bool hold);
 
 /* Puts "PLACE: " before the library's errors (NULL: nothing): for calls whose arguments came from a file. */
