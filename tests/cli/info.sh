@@ -31,14 +31,14 @@ accept info hexahedron.vtu
 contains 'hexahedron +1'
 contains 'volume +1$'
 
-# The README's list is that of a build with everything.
+# The manual's list is that of a build with everything.
 accept info --formats
 contains 'VTK XML, unstructured grid +[.]vtu'
-readme=$source/README.md
+manual=$(sed -n 's/^| \(.*[^ ]\)  *| \(.*\) |$/\1  \2/p' "$source/src/cli/tetcast.1" | sed 's/   */  /')
 while read -r row; do
   format=$(sed 's/   *.*//' <<<"$row") extensions=$(sed 's/.*   *//' <<<"$row")
   checks=$((checks + 1))
-  grep -qxF "| $format | $extensions |" "$readme" || fail "no row '| $format | $extensions |' in README.md"
+  grep -qxF "$format  $extensions" <<<"$manual" || fail "no row '| $format | $extensions |' in the manual"
 done <<<"$output"
 refuse 2 'takes no input' info --formats cube.vtu
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a cell of every type from every format that has such, and compares what went well with the table in the README.
+// Reads a cell of every type from every format that has such, and compares what went well with the table in the manual.
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -60,14 +60,14 @@ std::string try_cell(TetcastContext *context, const CellSample &cell, const std:
   return wrong;
 }
 
-// The lines of the README between the markers, as rows of trimmed fields.
-std::vector<std::vector<std::string>> table_in(const char *readme) {
-  std::ifstream file(readme);
+// The lines of the manual between the markers, as rows of trimmed fields.
+std::vector<std::vector<std::string>> table_in(const char *manual) {
+  std::ifstream file(manual);
   std::vector<std::vector<std::string>> rows;
   bool within = false;
   for (std::string line; std::getline(file, line);) {
-    if (line == "<!-- cells -->") within = true;
-    else if (line == "<!-- end of cells -->") within = false;
+    if (line == ".\\\" cells") within = true;
+    else if (line == ".\\\" end of cells") within = false;
     else if (within && line.compare(0, 1, "|") == 0) {
       std::vector<std::string> row;
       std::stringstream fields(line.substr(1));
@@ -97,11 +97,9 @@ int main(int argc, char **argv) {
   std::vector<std::string> formats;
   const char *extensions;
   for (int i = 0; tetcast_dataset_format(i, nullptr, &extensions); ++i) formats.push_back(std::string(extensions).substr(0, std::string(extensions).find(' ')));
-  std::vector<std::vector<std::string>> table = {{"cell"}, {"---"}};
-  for (const std::string &format : formats) {
+  std::vector<std::vector<std::string>> table = {{"cell"}};
+  for (const std::string &format : formats)
     table[0].push_back(format);
-    table[1].push_back(":-:");
-  }
   int done = 0;
   for (int type : types) {
     const CellSample cell = cell_sample(type);
@@ -116,7 +114,7 @@ int main(int argc, char **argv) {
       if (row[0].empty()) row[0] = name;
       if (!name.empty() && wrong.empty() && name != row[0]) std::cerr << "cell type " << type << ", " << format << ": is a " << name << "\n";
       const bool right = !path.empty() && wrong.empty() && name == row[0];
-      row.push_back(right ? "✓" : "");
+      row.push_back(right ? "+" : "");
       done += right;
     }
     table.push_back(row);
@@ -124,7 +122,7 @@ int main(int argc, char **argv) {
   tetcast_context_destroy(&context);
   const bool removed = std::system(("rm -rf '" + root + "'").c_str()) == 0;
 
-  // A build may lack formats; those it has are to be as the README says.
+  // A build may lack formats; those it has are to be as the manual says.
   const auto wanted = table_in(argv[1]);
   bool same = wanted.size() == table.size();
   for (size_t i = 0; same && i < table.size(); ++i) {
@@ -136,7 +134,7 @@ int main(int argc, char **argv) {
   }
   std::cout << done << " of formats and cells are read\n";
   if (same && removed) return 0;
-  std::cout << "The table in the README is not what this build does:\n\n";
+  std::cout << "The table in the manual is not what this build does:\n\n";
   for (const auto &row : table) {
     for (const std::string &field : row) std::cout << "| " << field << (field.empty() ? "" : " ");
     std::cout << "|\n";
