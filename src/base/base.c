@@ -9,8 +9,6 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "base/call.h"
-
 enum { ALIGNMENT = 64 };
 
 /* Large blocks come from the system and go back to it at once, where malloc() may keep what is freed; in huge pages if there are any,
@@ -78,31 +76,6 @@ int tc_context_threads(const TetcastContext *context) {
   if (threads > 0) return threads;
   const long processors = sysconf(_SC_NPROCESSORS_ONLN);
   return processors < 1 ? 1 : processors > 1024 ? 1024 : (int)processors;
-}
-
-void tc_message_v(TetcastContext *context, TetcastSeverity severity, const char *format, va_list arguments) {
-  if (!context || !context->message) return;
-  char text[1024]; /* no allocation: the message may be about one that failed */
-  vsnprintf(text, sizeof text, format, arguments);
-  for (char *c = text; *c; ++c) {
-    if (*c == '\n' || *c == '\r') *c = ' '; /* one line, whatever a file's name or another library's words hold */
-  }
-  tc_call_message(context, severity, text);
-}
-
-TetcastStatus tc_error(TetcastContext *context, TetcastStatus status, const char *format, ...) {
-  va_list arguments;
-  va_start(arguments, format);
-  tc_message_v(context, TETCAST_SEVERITY_ERROR, format, arguments);
-  va_end(arguments);
-  return status;
-}
-
-void tc_warning(TetcastContext *context, const char *format, ...) {
-  va_list arguments;
-  va_start(arguments, format);
-  tc_message_v(context, TETCAST_SEVERITY_WARNING, format, arguments);
-  va_end(arguments);
 }
 
 void *tc_allocate(TetcastContext *context, int64_t count, size_t size) {

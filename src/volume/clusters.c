@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/parallel.h"
-#include "volume/volume.h"
 
 enum { GRAIN = 256 };
 

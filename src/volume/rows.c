@@ -3,7 +3,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <pthread.h>
 #include <string.h>
 
 #include "base/parallel.h"
@@ -12,39 +11,10 @@
 
 enum { GRAIN = 1 << 14, CLUSTER_GRAIN = 256, AHEAD = 32 };
 
-struct TcRowsCache {
-  TetcastContext *context;
-  pthread_mutex_t mutex;
-  TcRows *first;
-};
-
-TetcastStatus tc_rows_cache_create(TetcastContext *context, TcRowsCache **out) {
-  TcRowsCache *cache;
-  if (!tc_allocate_array(context, (void **)&cache, 1, sizeof *cache, "volume")) return TETCAST_ERROR_MEMORY;
-  *cache = (TcRowsCache){.context = context};
-  pthread_mutex_init(&cache->mutex, NULL); /* which can't fail with default attributes */
-  *out = cache;
-  return TETCAST_OK;
-}
-
-void tc_rows_cache_destroy(TcRowsCache *cache) {
-  if (!cache) return;
-  pthread_mutex_destroy(&cache->mutex);
-  tc_release(cache->context, cache);
-}
-
 static size_t bytes_of(const TcRows *rows) {
   const size_t number = rows->is_double ? sizeof(double) : sizeof(float);
   return sizeof *rows + (size_t)rows->count * (size_t)rows->width * number +
          (rows->range ? (size_t)rows->volume->clusters.count * sizeof *rows->range : 0);
-}
-
-size_t tc_rows_cache_bytes(TcRowsCache *cache) {
-  size_t bytes = sizeof *cache;
-  pthread_mutex_lock(&cache->mutex);
-  for (const TcRows *rows = cache->first; rows; rows = rows->next) bytes += bytes_of(rows);
-  pthread_mutex_unlock(&cache->mutex);
-  return bytes;
 }
 
 static void destroy(TcRows *rows) {
@@ -54,40 +24,13 @@ static void destroy(TcRows *rows) {
   tc_release(context, rows);
 }
 
+/* From here on others may find them. */
+static void share(TcRows *rows, int64_t serial) { tc_shared_add(rows->volume->shared, &rows->entry, rows, serial, bytes_of(rows)); }
+
+void tc_rows_retain(TcRows *rows) { tc_shared_retain(rows->volume->shared, &rows->entry); }
+
 void tc_rows_release(TcRows *rows) {
-  if (!rows) return;
-  TcRowsCache *cache = rows->volume->rows;
-  pthread_mutex_lock(&cache->mutex);
-  const bool unused = --rows->users == 0;
-  TcRows **at = &cache->first;
-  while (unused && *at != rows) at = &(*at)->next;
-  if (unused) *at = rows->next;
-  pthread_mutex_unlock(&cache->mutex);
-  if (unused) destroy(rows);
-}
-
-void tc_rows_retain(TcRows *rows) {
-  pthread_mutex_lock(&rows->volume->rows->mutex);
-  ++rows->users;
-  pthread_mutex_unlock(&rows->volume->rows->mutex);
-}
-
-/* Rows made from this field that are in use, with one user more. */
-static TcRows *find(TcRowsCache *cache, int64_t serial) {
-  pthread_mutex_lock(&cache->mutex);
-  TcRows *rows = cache->first;
-  while (rows && rows->serial != serial) rows = rows->next;
-  if (rows) ++rows->users;
-  pthread_mutex_unlock(&cache->mutex);
-  return rows;
-}
-
-static void add(TcRowsCache *cache, TcRows *rows) {
-  pthread_mutex_lock(&cache->mutex);
-  rows->users = 1;
-  rows->next = cache->first;
-  cache->first = rows;
-  pthread_mutex_unlock(&cache->mutex);
+  if (rows && tc_shared_release(rows->volume->shared, &rows->entry)) destroy(rows);
 }
 
 /* ── taking values ── */
@@ -186,7 +129,7 @@ static TetcastStatus create(const TetcastVolume *volume, Take *take, int width, 
 TetcastStatus tc_rows_of_fields(const TetcastVolume *volume, const TetcastField *const *fields, int width, TcRows **rows) {
   Take take = {.fields = fields, .association = fields[0]->association, .fill = take_rows, .scale = 1, .clamp = true};
   const TetcastStatus status = create(volume, &take, width, rows);
-  if (!status) add(volume->rows, *rows);
+  if (!status) share(*rows, 0);
   return status;
 }
 
@@ -237,7 +180,7 @@ TetcastStatus tc_rows_of_scalar(const TetcastVolume *volume, const TetcastField 
   const TetcastStatus checked = check_scalar(volume, field);
   if (checked) return checked;
   const int64_t serial = field->memory ? field->serial : 0; /* a borrowed array may have changed */
-  if (serial && (*out = find(volume->rows, serial))) return TETCAST_OK;
+  if (serial && (*out = tc_shared_find(volume->shared, serial))) return TETCAST_OK;
   double range[2];
   tc_field_range(field, range, NULL);
   const double largest = fmax(fabs(range[0]), fabs(range[1]));
@@ -253,7 +196,6 @@ TetcastStatus tc_rows_of_scalar(const TetcastVolume *volume, const TetcastField 
   const TetcastStatus status = create(volume, &take, take.association == TETCAST_CORNER ? 4 : 1, &rows);
   if (status) return status;
   rows->exponent = exponent;
-  rows->serial = serial;
   rows->largest = largest * take.scale;
   const int64_t clusters = volume->clusters.seeds ? volume->clusters.count : 0;
   if (clusters > 0 && !tc_allocate_array(volume->context, (void **)&rows->range, clusters, sizeof *rows->range, "ranges of a field")) {
@@ -261,7 +203,7 @@ TetcastStatus tc_rows_of_scalar(const TetcastVolume *volume, const TetcastField 
     return TETCAST_ERROR_MEMORY;
   }
   tc_parallel_for(volume->context, clusters, CLUSTER_GRAIN, take_ranges, rows, NULL);
-  add(volume->rows, rows);
+  share(rows, serial);
   *out = rows;
   return TETCAST_OK;
 }

@@ -4,6 +4,7 @@
 #ifndef TC_VOLUME_ROWS_H
 #define TC_VOLUME_ROWS_H
 
+#include "volume/shared.h"
 #include "volume/volume.h"
 
 /* A scalar whose values are all below 2^−TC_TINY_FIELD is stored times 2^TC_TINY_FIELD, so that interpolation does not underflow; one with a value above
@@ -26,18 +27,8 @@ typedef struct TcRows {
   float (*range)[2]; /* [clusters]: all values of a cluster lie in it, NaN apart; (∞, −∞) if there are none but NaN. NULL: no clusters */
   double largest;    /* of its finite magnitudes, as stored */
 
-  /* What is shared. */
-  struct TcRows *next;
-  int64_t users;
-  int64_t serial; /* of the one field that it was made from, 0: not to be shared */
+  TcSharedEntry entry; /* among what scenes of the volume share */
 } TcRows;
-
-/* The rows that scenes of a volume use now. */
-typedef struct TcRowsCache TcRowsCache;
-
-TetcastStatus tc_rows_cache_create(TetcastContext *context, TcRowsCache **cache);
-void tc_rows_cache_destroy(TcRowsCache *cache);
-size_t tc_rows_cache_bytes(TcRowsCache *cache); /* of the rows that there are */
 
 /* A scalar for a transfer function. A field that may not change (TETCAST_COPY) is shared by all that ask for it. The field must have as many values as
  * the volume's mesh had vertices or cells (TETCAST_ERROR_ARGUMENT). */

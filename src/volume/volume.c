@@ -9,7 +9,6 @@
 #include "base/parallel.h"
 #include "mesh/order.h"
 #include "mesh/stage.h"
-#include "volume/rows.h"
 
 /* Resident: 25 bytes per cell (20, its source, and its share of a cluster), 16 or 28 per vertex (the position and its source), 16 per shell face and
  * what Embree takes; a field of scenes, 4 or 8 per vertex. While preparing, 48 per cell and 4 per vertex more at most (adjacency.c); Embree begins when that is given back. */
@@ -254,7 +253,7 @@ TetcastStatus tc_volume_create(TetcastContext *context, const TetcastMesh *mesh,
   volume->traversal = desc->traversal;
   volume->vertex_count = mesh->vertices.count;
   volume->mesh_cell_count = mesh->tetrahedra.count;
-  TetcastStatus status = tc_rows_cache_create(context, &volume->rows);
+  TetcastStatus status = tc_shared_create(context, &volume->shared);
   if (!status) status = build(volume, mesh, desc);
   if (status) {
     tc_volume_destroy(volume);
@@ -275,7 +274,7 @@ void tc_volume_destroy(TetcastVolume *volume) {
   tc_release(context, volume->corner_order);
   tc_release(context, volume->corner_vertices);
   tc_release(context, volume->welds);
-  tc_rows_cache_destroy(volume->rows);
+  tc_shared_destroy(volume->shared);
   tc_release(context, volume);
 }
 
@@ -290,5 +289,5 @@ void tc_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info) {
                 (adjacency->vertices ? cells * sizeof *adjacency->vertices : 0) +
                 (adjacency->source ? cells * sizeof *adjacency->source : 0) + (volume->corner_order ? cells : 0) +
                 (volume->corner_vertices ? cells * sizeof *volume->corner_vertices : 0) + (size_t)volume->weld_count * sizeof *volume->welds +
-                tc_rows_cache_bytes(volume->rows);
+                tc_shared_bytes(volume->shared);
 }

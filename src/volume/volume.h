@@ -8,6 +8,7 @@
 #include "mesh/weld.h"
 #include "volume/clusters.h"
 #include "volume/embree.h"
+#include "volume/shared.h"
 
 /* What rays are looked for in; made in shell.c, or the volume's own. */
 typedef struct TcShell {
@@ -46,7 +47,7 @@ struct TetcastVolume {
   TcClusters clusters; /* none where Embree holds every cell */
   TcShell shell;       /* of the whole volume */
 
-  struct TcRowsCache *rows; /* fields in the volume's order, which scenes share (rows.h) */
+  TcShared *shared; /* fields in the volume's order (rows.h), which scenes share */
   TetcastVolumeInfo info;
 };
 

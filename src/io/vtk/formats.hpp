@@ -17,11 +17,6 @@ void read_legacy_grid(const Reading &reading, Contents *contents);
 void read_legacy_structured(const Reading &reading, Contents *contents);
 void read_pvd(const Reading &reading, Contents *contents);
 void read_series(const Reading &reading, Contents *contents);
-void read_exodus(const Reading &reading, Contents *contents);
-void read_vtkhdf(const Reading &reading, Contents *contents);
-void read_ensight(const Reading &reading, Contents *contents);
-void read_cgns(const Reading &reading, Contents *contents);
-void read_openfoam(const Reading &reading, Contents *contents);
 void read_gmsh(const Reading &reading, Contents *contents);
 void read_tetgen(const Reading &reading, Contents *contents); // .node with .ele
 

@@ -19,7 +19,6 @@
 
 #include "common.hpp"
 #include "files.hpp"
-#include "formats.hpp"
 #include "wire.hpp"
 
 extern char **environ;

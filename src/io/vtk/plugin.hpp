@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "contents.hpp"
 
 namespace tcv {
 
@@ -31,6 +32,12 @@ PluginRequest request_of(char **arguments);
 int64_t choose_step(const std::string &path, int64_t step, double time, const std::vector<double> &times);
 
 bool plugin_exists(const char *name);
+
+void read_exodus(const Reading &reading, Contents *contents);
+void read_vtkhdf(const Reading &reading, Contents *contents);
+void read_ensight(const Reading &reading, Contents *contents);
+void read_cgns(const Reading &reading, Contents *contents);
+void read_openfoam(const Reading &reading, Contents *contents);
 
 } // namespace tcv
 
