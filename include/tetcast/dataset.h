@@ -23,6 +23,7 @@ typedef struct TetcastDataset TetcastDataset;
 
 /* What to read of a file. */
 typedef struct TetcastDatasetDesc {
+  uint32_t cookie;   /* set by tetcast_dataset_desc_default(); catches an uninitialised struct */
   const char *block; /* of a file of several blocks those of this name, or in the group of this name; NULL: all */
   int64_t step;      /* of a file of several time steps this one, from 0; negative: from the end, -1 is the last */
   double time;       /* the step at this time instead; NaN: none asked for */

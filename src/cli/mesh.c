@@ -21,7 +21,7 @@
 #include "adapter.h"
 #include "cli.h"
 #include "completion.h"
-#include "fields.h"
+#include "demo/fields.h"
 #include "file.h"
 
 static const char help_text[] =

@@ -89,7 +89,11 @@ static void assert_field(const TetcastDataset *dataset, const char *selector, co
 
 static void test_selectors(void **state) {
   Fixture *fixture = *state;
-  TetcastDataset *dataset = read_good(fixture, text_file(fixture, "mixed.vtk", mixed));
+  const char *path = text_file(fixture, "mixed.vtk", mixed);
+  TetcastDataset *dataset = NULL;
+  assert_int_equal(tetcast_dataset_read(fixture->context, path, &(TetcastDatasetDesc){0}, &dataset), TETCAST_ERROR_ARGUMENT);
+  assert_null(dataset);
+  dataset = read_good(fixture, path);
   TetcastDatasetArray array;
   static const char *const names[] = {"flow", "small", "pair", "pair:mag", "part", "flow"};
   static const char *const types[] = {"float64", "uint8", "int16", "float32", "int32", "float32"};

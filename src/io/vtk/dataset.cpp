@@ -212,8 +212,11 @@ static void read_dataset(TetcastContext *context, const char *path, const Tetcas
   report_unread(dataset, desc.only);
 }
 
+static constexpr uint32_t desc_cookie = 0x74636473; // "tcds"
+
 TetcastDatasetDesc tetcast_dataset_desc_default(void) {
   TetcastDatasetDesc desc = {};
+  desc.cookie = desc_cookie;
   desc.time = std::numeric_limits<double>::quiet_NaN();
   desc.merge_tolerance = -1;
   return desc;
@@ -227,6 +230,9 @@ TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, co
                                  "tetcast_dataset_read: context, path and dataset must not be NULL");
   }
   const TetcastDatasetDesc all = desc ? *desc : tetcast_dataset_desc_default();
+  if (all.cookie != desc_cookie)
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
+                                 "tetcast_dataset_read: the description was not made by tetcast_dataset_desc_default()");
   if (std::isinf(all.time) || !std::isfinite(all.merge_tolerance)) {
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "tetcast_dataset_read: time %g or merge_tolerance %g is not a finite number",
                                  all.time, all.merge_tolerance);
