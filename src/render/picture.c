@@ -238,12 +238,13 @@ static void keep_vertices(const TetcastScene *scene, const TcJob *job, bool sing
 
 /* ── all of it ── */
 
-/* Single precision, where a bound on what it costs leaves enough of the tolerance. */
+/* Single precision, where a bound on what it costs leaves enough of the tolerance. Holes of the field have borders at which what is seen jumps, which the
+ * bound leaves out. */
 static bool allow_single(const TetcastScene *scene, const TetcastRenderDesc *desc, const TcScreen *setup, Render *render) {
   const TcIsaKernels *kernels = tc_single_kernels_for(desc->isa);
   TcJob *job = &render->job;
   double values;
-  if (!kernels || !(desc->tolerance > 0) || job->values->association != TETCAST_POINT || isnan(scene->values->largest)) return false;
+  if (!kernels || !(desc->tolerance > 0) || job->values->association != TETCAST_POINT || job->values->has_holes) return false;
   if (!tc_tolerance_single(job->pieces, desc->tolerance, scene->values->largest, 2 * scene->volume->radius, &job->tolerance, &values)) return false;
   render->precise = *job;
   render->precise.tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);
