@@ -217,13 +217,16 @@ static bool worth_projecting(const TetcastScene *scene, int64_t rays, const TcJo
   return !job->shell->visible && crossings > 3 * (double)scene->volume->vertex_count;
 }
 
-/* Projects vertices; `screen` is part of the job then. Where there is no memory for it, that is told: rays in space would do without, but what they see
- * is rounded otherwise, and no bit of a picture depends on how much memory there was. */
-static TetcastStatus project(const TetcastScene *scene, const TcIsaKernels *kernels, const TcScreen *setup, TcJob *job, TcScreen *screen) {
+/* Projects vertices; `screen` is part of the job then. Where there is no memory for it, that is told: rays in space would
+ * do without, but what they see is rounded otherwise, and no bit of a picture depends on how much memory there was. */
+static TetcastStatus project(const TetcastScene *scene, const TcIsaKernels *kernels, const TcScreen *setup, TcJob *job,
+                             TcScreen *screen) {
   const bool single = kernels->vertex_size < 4 * sizeof(double);
   const int64_t count = scene->volume->vertex_count;
   void *vertices = tc_scene_swap_vertices(scene, single, NULL);
-  if (!vertices && !tc_allocate_array(scene->context, &vertices, count, kernels->vertex_size, "vertices on the screen")) return TETCAST_ERROR_MEMORY;
+  if (!vertices &&
+      !tc_allocate_array(scene->context, &vertices, count, kernels->vertex_size, "vertices on the screen"))
+    return TETCAST_ERROR_MEMORY;
   *screen = *setup;
   screen->vertices = vertices;
   Projection projection = {kernels, job, screen};
@@ -238,13 +241,14 @@ static void keep_vertices(const TetcastScene *scene, const TcJob *job, bool sing
 
 /* ── all of it ── */
 
-/* Single precision, where a bound on what it costs leaves enough of the tolerance. Holes of the field have borders at which what is seen jumps, which the
- * bound leaves out. */
+/* Single precision, where a bound on what it costs leaves enough of the tolerance. Holes of the field have borders at
+ * which what is seen jumps, which the bound leaves out. */
 static bool allow_single(const TetcastScene *scene, const TetcastRenderDesc *desc, const TcScreen *setup, Render *render) {
   const TcIsaKernels *kernels = tc_single_kernels_for(desc->isa);
   TcJob *job = &render->job;
   double values;
-  if (!kernels || !(desc->tolerance > 0) || job->values->association != TETCAST_POINT || job->values->has_holes) return false;
+  if (!kernels || !(desc->tolerance > 0) || job->values->association != TETCAST_POINT || job->values->has_holes)
+    return false;
   if (!tc_tolerance_single(job->pieces, desc->tolerance, scene->values->largest, 2 * scene->volume->radius, &job->tolerance, &values)) return false;
   render->precise = *job;
   render->precise.tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);

@@ -14,7 +14,7 @@ enum {
 typedef struct TcWaiting {
   TcRays rays;
   unsigned lanes;
-  unsigned doubtful; /* single precision: lanes whose rays pass the border of a face of the shell within what rounding may move it by */
+  unsigned doubtful; /* single precision: lanes whose rays pass an edge of the shell as near as rounding may move it */
   TcHits *hits;
   int64_t destination[TC_LANES];
 } TcWaiting;
@@ -63,14 +63,17 @@ TC_NOINLINE void tc_face_reached(const TcQueue *queue, const TcWaiting *waiting,
   }
 }
 
-/* What rounding may make of a face's edges, at most: each end is moved by δ = beside + relative · its distance from the ray, which is at most √2 times the
- * largest coordinate c, and a cross product by √2 c · 2 δ + δ² at most; what it is itself rounded by is less than what `relative` has to spare. In single
- * precision a ray may meet the shell, or miss it, by that alone, where it would go through a lot of the mesh: such rays are walked again. */
+/* In single precision a ray may meet the shell, or miss it, by rounding alone, also where it would go through a lot of
+ * the mesh: such rays are walked again. Rounding moves each end of an edge by at most δ = beside + relative · its distance
+ * from the ray, which is at most √2 times the largest coordinate c, and so the edge's cross product by at most
+ * 2 √2 c δ + δ². What the product itself is rounded by is less than what 1.5 c, for √2 c, and 3 c, for 2 √2 c, have to
+ * spare. */
 #if TC_SINGLE
 TC_INLINE TcVec tc_face_margin(const TcGround *ground, const TcVec x[3], const TcVec y[3]) {
   TcVec most = tc_set(0);
   for (int k = 0; k < 3; ++k) most = tc_max(most, tc_max(tc_abs(x[k]), tc_abs(y[k])));
-  const TcVec moved = tc_madd(tc_set((TcReal)(1.5 * ground->resolution.relative)), most, tc_set((TcReal)ground->resolution.beside));
+  const TcVec relative = tc_set((TcReal)(1.5 * ground->resolution.relative));
+  const TcVec moved = tc_madd(relative, most, tc_set((TcReal)ground->resolution.beside));
   return moved * tc_madd(tc_set(3), most, moved);
 }
 #endif

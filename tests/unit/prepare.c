@@ -468,7 +468,7 @@ static void values_find_their_places(void **state) {
   fixture_end(&fixture);
 }
 
-/* Coordinates are scaled without loss from the largest that there may be down to where the scale itself is no number. */
+/* Coordinates are scaled without loss, from the largest that there may be to where the scale itself is no number. */
 static void any_unit_is_scaled_exactly(void **state) {
   (void)state;
   const int exponents[] = {996, 600, -500, -1022, -1070};
