@@ -236,7 +236,8 @@ static void begin_packet(const int which, const TcGatherJob *job, TcWaiting *wai
   p->lanes = waiting->lanes;
   memcpy(p->destination, waiting->destination, sizeof p->destination);
   p->active = tc_none();
-  p->starting = p->waiting = p->stopped = p->lost = 0;
+  p->starting = p->waiting = p->stopped = 0;
+  p->lost = waiting->doubtful;
   p->seen = p->rays.begin;
   p->shift = tc_set(0);
   p->steps = 0;
@@ -245,7 +246,7 @@ static void begin_packet(const int which, const TcGatherJob *job, TcWaiting *wai
     p->next[l] = 1;
     starting |= (unsigned)(hits[l].count > 0) << l;
   }
-  p->starting = starting & p->lanes;
+  p->starting = starting & p->lanes & ~p->lost;
   tc_gather_begin(which, job, &packet->gather);
   packet->under_way = true;
 }

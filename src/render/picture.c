@@ -134,7 +134,7 @@ typedef struct Render {
   const TetcastScene *scene;
   TetcastFrame *frame;
   const TcIsaKernels *kernels;
-  TcScreen screen, precise_screen;
+  TcScreen screen;
   Working *workers;
   bool bounded; /* a bound on the error is gathered as well */
   bool plain;   /* pixels of the frame are the sums, and there are no channels */
@@ -217,18 +217,22 @@ static bool worth_projecting(const TetcastScene *scene, int64_t rays, const TcJo
   return !job->shell->visible && crossings > 3 * (double)scene->volume->vertex_count;
 }
 
-/* Projects vertices, if that pays and there is memory; `screen` is part of the job then. */
-static void project(const TetcastScene *scene, const TcIsaKernels *kernels, const TcScreen *setup, TcJob *job, TcScreen *screen) {
+/* Projects vertices; `screen` is part of the job then. Where there is no memory for it, that is told: rays in space would
+ * do without, but what they see is rounded otherwise, and no bit of a picture depends on how much memory there was. */
+static TetcastStatus project(const TetcastScene *scene, const TcIsaKernels *kernels, const TcScreen *setup, TcJob *job,
+                             TcScreen *screen) {
   const bool single = kernels->vertex_size < 4 * sizeof(double);
   const int64_t count = scene->volume->vertex_count;
   void *vertices = tc_scene_swap_vertices(scene, single, NULL);
-  if (!vertices) vertices = tc_allocate(scene->context, count, kernels->vertex_size);
-  if (!vertices) return;
+  if (!vertices &&
+      !tc_allocate_array(scene->context, &vertices, count, kernels->vertex_size, "vertices on the screen"))
+    return TETCAST_ERROR_MEMORY;
   *screen = *setup;
   screen->vertices = vertices;
   Projection projection = {kernels, job, screen};
   tc_parallel_for(scene->context, count, 1 << 14, project_some, &projection, NULL);
   job->screen = screen;
+  return TETCAST_OK;
 }
 
 static void keep_vertices(const TetcastScene *scene, const TcJob *job, bool single) {
@@ -237,12 +241,14 @@ static void keep_vertices(const TetcastScene *scene, const TcJob *job, bool sing
 
 /* ── all of it ── */
 
-/* Single precision, where a bound on what it costs leaves enough of the tolerance. */
+/* Single precision, where a bound on what it costs leaves enough of the tolerance. Holes of the field have borders at
+ * which what is seen jumps, which the bound leaves out. */
 static bool allow_single(const TetcastScene *scene, const TetcastRenderDesc *desc, const TcScreen *setup, Render *render) {
   const TcIsaKernels *kernels = tc_single_kernels_for(desc->isa);
   TcJob *job = &render->job;
   double values;
-  if (!kernels || !(desc->tolerance > 0) || job->values->association != TETCAST_POINT || isnan(scene->values->largest)) return false;
+  if (!kernels || !(desc->tolerance > 0) || job->values->association != TETCAST_POINT || job->values->has_holes)
+    return false;
   if (!tc_tolerance_single(job->pieces, desc->tolerance, scene->values->largest, 2 * scene->volume->radius, &job->tolerance, &values)) return false;
   render->precise = *job;
   render->precise.tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);
@@ -253,7 +259,7 @@ static bool allow_single(const TetcastScene *scene, const TetcastRenderDesc *des
   return true;
 }
 
-static void plan(const TetcastScene *scene, const TetcastRenderDesc *desc, bool measured, Render *render) {
+static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *desc, bool measured, Render *render) {
   TcJob *job = &render->job;
   TcScreen setup;
   const int64_t rays = job->width * job->height * desc->samples;
@@ -266,15 +272,11 @@ static void plan(const TetcastScene *scene, const TetcastRenderDesc *desc, bool 
   job->resolution = on_screen ? tc_screen_resolution(scene->volume, &setup, false, job->width, job->height, largest)
                               : in_ray_space;
   if (!scene->coefficients) job->tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);
-  if (!on_screen) return;
+  if (!on_screen) return TETCAST_OK;
   if (measured && !scene->coefficients && allow_single(scene, desc, &setup, render)) {
-    project(scene, render->kernels, &setup, job, &render->screen);
     render->precise.resolution = in_ray_space; /* where rays are walked again, which are few */
-    if (job->screen) return;
-    render->kernels = job->precise;
-    *job = render->precise;
   }
-  project(scene, render->kernels, &setup, job, &render->screen);
+  return project(scene, render->kernels, &setup, job, &render->screen);
 }
 
 /* Renders with all that is needed at hand, and sums up what the workers counted. */
@@ -331,9 +333,9 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   render.bounded = measured;
   render.plain = !scene->coefficients && frame->type == TETCAST_TYPE_FLOAT64 && !measured;
   render.kernels = tc_kernels_for(one_by_one ? TETCAST_ISA_SCALAR : desc->isa);
-  plan(scene, desc, measured, &render); /* which may take those in single precision */
+  status = plan(scene, desc, measured, &render); /* which may take those in single precision */
   TetcastRenderStats sum = {.rays = frame->width * frame->height * desc->samples, .isa = render.kernels->name, .precision = render.kernels->precision};
-  status = run(&render, &desc->progress, &sum);
+  if (!status) status = run(&render, &desc->progress, &sum);
   keep_vertices(scene, job, job->precise != NULL);
   tc_sampler_destroy(sampler);
   if (!measured) sum.error = NAN;

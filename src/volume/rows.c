@@ -182,7 +182,8 @@ TetcastStatus tc_rows_of_scalar(const TetcastVolume *volume, const TetcastField 
   const int64_t serial = field->memory ? field->serial : 0; /* a borrowed array may have changed */
   if (serial && (*out = tc_shared_find(volume->shared, serial))) return TETCAST_OK;
   double range[2];
-  tc_field_range(field, range, NULL);
+  int64_t nonfinite;
+  tc_field_range(field, range, &nonfinite);
   const double largest = fmax(fabs(range[0]), fabs(range[1]));
   const bool tiny = largest > 0 && largest < ldexp(1, -TC_TINY_FIELD);
   const int exponent = tiny ? -TC_TINY_FIELD : largest > TC_LARGEST_SCALAR ? TC_HUGE_FIELD : 0;
@@ -197,6 +198,7 @@ TetcastStatus tc_rows_of_scalar(const TetcastVolume *volume, const TetcastField 
   if (status) return status;
   rows->exponent = exponent;
   rows->largest = largest * take.scale;
+  rows->has_holes = nonfinite > 0;
   const int64_t clusters = volume->clusters.seeds ? volume->clusters.count : 0;
   if (clusters > 0 && !tc_allocate_array(volume->context, (void **)&rows->range, clusters, sizeof *rows->range, "ranges of a field")) {
     destroy(rows);

@@ -26,6 +26,7 @@ typedef struct TcRows {
   int exponent;      /* stored times 2^−exponent */
   float (*range)[2]; /* [clusters]: all values of a cluster lie in it, NaN apart; (∞, −∞) if there are none but NaN. NULL: no clusters */
   double largest;    /* of its finite magnitudes, as stored */
+  bool has_holes;    /* some are not finite */
 
   TcSharedEntry entry; /* among what scenes of the volume share */
 } TcRows;

@@ -14,6 +14,7 @@ enum {
 typedef struct TcWaiting {
   TcRays rays;
   unsigned lanes;
+  unsigned doubtful; /* single precision: lanes whose rays pass an edge of the shell as near as rounding may move it */
   TcHits *hits;
   int64_t destination[TC_LANES];
 } TcWaiting;
@@ -62,24 +63,51 @@ TC_NOINLINE void tc_face_reached(const TcQueue *queue, const TcWaiting *waiting,
   }
 }
 
+/* In single precision a ray may meet the shell, or miss it, by rounding alone, also where it would go through a lot of
+ * the mesh: such rays are walked again. Rounding moves each end of an edge by at most δ = beside + relative · its distance
+ * from the ray, which is at most √2 times the largest coordinate c, and so the edge's cross product by at most
+ * 2 √2 c δ + δ². What the product itself is rounded by is less than what 1.5 c, for √2 c, and 3 c, for 2 √2 c, have to
+ * spare. */
+#if TC_SINGLE
+TC_INLINE TcVec tc_face_margin(const TcGround *ground, const TcVec x[3], const TcVec y[3]) {
+  TcVec most = tc_set(0);
+  for (int k = 0; k < 3; ++k) most = tc_max(most, tc_max(tc_abs(x[k]), tc_abs(y[k])));
+  const TcVec relative = tc_set((TcReal)(1.5 * ground->resolution.relative));
+  const TcVec moved = tc_madd(relative, most, tc_set((TcReal)ground->resolution.beside));
+  return moved * tc_madd(tc_set(3), most, moved);
+}
+#endif
+
 /* Face i of the shell, which the rays of `lanes` may cross. */
 static void tc_face_candidate(void *user, uint32_t i, unsigned lanes) {
-  const TcQueue *queue = user;
+  TcQueue *queue = user;
   const uint32_t *vertex = queue->ground->shell->faces[i].vertex;
   for (int j = 0; j < TC_QUEUE; ++j) {
     unsigned reached = lanes >> j * TC_LANES & TC_ALL_LANES;
     if (!reached) continue;
-    const TcWaiting *waiting = &queue->waiting[j];
+    TcWaiting *waiting = &queue->waiting[j];
     TcVec x[3], y[3];
     for (int k = 0; k < 3; ++k) tc_point_beside(queue->ground, &waiting->rays, vertex[k], &x[k], &y[k]);
     /* An edge has the sign of the difference of two products, rounded or not, if they differ: most lanes need no more. */
     TcMask left = tc_none(), right = left;
+#if TC_SINGLE
+    const TcVec margin = tc_face_margin(queue->ground, x, y);
+    TcMask surely_left = left, surely_right = left, sure = tc_all();
+#endif
     for (int k = 0; k < 3; ++k) {
       const int next = k == 2 ? 0 : k + 1;
       const TcVec a = x[k] * y[next], b = y[k] * x[next];
       left = tc_or(left, tc_lt(b, a));
       right = tc_or(right, tc_lt(a, b));
+#if TC_SINGLE
+      surely_left = tc_or(surely_left, tc_lt(margin, a - b));
+      surely_right = tc_or(surely_right, tc_lt(margin, b - a));
+      sure = tc_and(sure, tc_lt(margin, tc_abs(a - b)));
+#endif
     }
+#if TC_SINGLE
+    waiting->doubtful |= reached & ~tc_bits(tc_or(sure, tc_and(surely_left, surely_right)));
+#endif
     reached &= ~tc_bits(tc_and(left, right));
     if (reached) tc_face_reached(queue, waiting, i, reached);
   }
@@ -95,6 +123,7 @@ static bool tc_queue_trace(TcQueue *queue) {
   unsigned lanes = 0;
   for (int j = 0; j < queue->count; ++j) {
     lanes |= queue->waiting[j].lanes << j * TC_LANES;
+    queue->waiting[j].doubtful = 0;
     for (int l = 0; l < TC_LANES; ++l) queue->waiting[j].hits[l].count = 0;
   }
   if (!lanes || !shell->embree) return true;

@@ -81,7 +81,7 @@ static TcResolution resolution(const TetcastVolume *volume, double u, double bes
 
 TcResolution tc_screen_resolution(const TetcastVolume *volume, const TcScreen *screen, bool single, int64_t width, int64_t height, double values) {
   const double size = (double)width + (double)height + fabs(screen->x0) + fabs(screen->y0);
-  if (single) return resolution(volume, 0x1p-24, 1.5 / screen->unit, values);
+  if (single) return resolution(volume, 0x1p-24, 1.5, values); /* units, in which the ray is walked */
   return resolution(volume, 0x1p-53, 1.5 * 0x1p-53 * (screen->extent + size), values);
 }
 

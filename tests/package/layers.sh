@@ -47,11 +47,12 @@ done | awk '
   { included[$1, ++count[$1]] = file_of($1, $2) }
   END { for (file in count) follow(file, file) }' | sort >"$reached"
 
-# check FOLDER ALLOWED…: what files of FOLDER include, in the end, is of FOLDER, of an allowed folder of src, public, or not of here.
+# check FOLDER ALLOWED…: what files of FOLDER include, in the end, is of FOLDER, of an allowed folder or file of src,
+# public, or not of here.
 check() {
   folder=$1
   shift
-  allowed=$(printf '|src/%s/' "$folder" "$@")
+  allowed=$(printf '|src/%s(/|$)' "$folder" "$@")
   while read -r file to from && [ -n "$file" ]; do
     complain "$file includes $to, in $from, which is not above it"
   done <<END
