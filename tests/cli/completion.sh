@@ -54,8 +54,8 @@ for command in render converge info mesh; do
   done
   in_zsh=$(sed -n "/^    $command)\$/,/;;/p" zsh.txt | grep -o -- "'--[a-z-]*" | tr -d "'" | sort)
   in_fish=$(sed -n "s/.*seen_subcommand_from $command' -l \([a-z-]*\).*/--\1/p" fish.txt | sort)
-  [ "$in_zsh" = "$offered" ] || fail "zsh offers other options of $command than bash: $in_zsh"
-  [ "$in_fish" = "$offered" ] || fail "fish offers other options of $command than bash: $in_fish"
+  [ "$in_zsh" = "$offered" ] || fail "zsh and bash offer different options of $command:" $(comm -3 <(echo "$in_zsh") <(echo "$offered"))
+  [ "$in_fish" = "$offered" ] || fail "fish and bash offer different options of $command:" $(comm -3 <(echo "$in_fish") <(echo "$offered"))
 done
 for option in $("$tetcast" render --help | grep -oE -- '--[a-z][a-z-]+' | sort -u); do
   completes render "$option"
