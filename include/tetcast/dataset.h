@@ -93,6 +93,10 @@ typedef struct TetcastDatasetArray {
  * array has the cell array "block": the number of each cell's block in tetcast_dataset_block(). */
 TETCAST_API bool tetcast_dataset_array(const TetcastDataset *dataset, int i, TetcastDatasetArray *array);
 
+/* The name of array i = 0, 1, … that the file has and that was not read: it is not the one that the description asked
+ * for, or it can't be read. Valid while the dataset lives. NULL beyond the last. */
+TETCAST_API const char *tetcast_dataset_unread(const TetcastDataset *dataset, int i);
+
 /* Number of the file's points, and of its cells of any kind, of all pieces, before any are merged or left out. */
 TETCAST_API int64_t tetcast_dataset_point_count(const TetcastDataset *dataset);
 TETCAST_API int64_t tetcast_dataset_cell_count(const TetcastDataset *dataset);

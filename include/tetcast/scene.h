@@ -89,19 +89,19 @@ TETCAST_API TetcastRenderDesc tetcast_render_desc_default(void);
 typedef struct TetcastRenderStats {
   int64_t rays;         /* cast: width × height × samples */
   int64_t segments;     /* cells crossed over a length > 0, summed over the rays */
-  double error;         /* largest of the pixels' bounds as in TETCAST_CHANNEL_ERROR; NaN with another integrator than the exact one and with
-                         * coefficients */
+  double error;         /* largest of the pixels' bounds as in TETCAST_CHANNEL_ERROR; NaN with another integrator than the exact one, and where
+                         * neither that channel nor a tolerance is asked for */
   int64_t lost;         /* rays whose walk ended before the boundary: 0, or a defect of tetcast */
   const char *isa;      /* instruction set of the kernel that ran; static storage */
   const char *precision; /* of the arithmetic: "double", or "single" (of the walk, rays where it may not do apart); static storage */
 } TetcastRenderStats;
 
 /* Renders into every pixel of `frame`, all its channels. `desc` and `stats` may be NULL. The scene must have coefficients, or a transfer
- * function and the volume a field (TETCAST_ERROR_ARGUMENT).
+ * function and a field (TETCAST_ERROR_ARGUMENT).
  *
  * With coefficients, the pixel's colour is the radiance: of three groups as red, green, blue; of one group grey; of another number
  * grey, their mean. Its alpha is 1 − transmittance, the mean of the groups'. Only the exact integrator works with them, to rounding whatever the
- * tolerance, and only the scalar kernel. Channels of groups need a frame with the scene's number of groups; the error channel, a transfer function.
+ * tolerance. Channels of groups need a frame with the scene's number of groups.
  *
  * With one instruction set the result has the same bits for any
  * number of threads. After an error or a cancelled call the frame's pixels are unspecified and the scene is as before. Calls with

@@ -17,6 +17,7 @@
   X(void, dataset_destroy, (TetcastDataset **))                                                                        \
   X(bool, dataset_cell_type, (const TetcastDataset *, int, const char **, int64_t *))                                  \
   X(bool, dataset_array, (const TetcastDataset *, int, TetcastDatasetArray *))                                         \
+  X(const char *, dataset_unread, (const TetcastDataset *, int))                                                       \
   X(int64_t, dataset_point_count, (const TetcastDataset *))                                                            \
   X(int64_t, dataset_cell_count, (const TetcastDataset *))                                                             \
   X(TetcastDatasetPieces, dataset_pieces, (const TetcastDataset *))                                                    \

@@ -286,6 +286,7 @@ static const struct option words[] = {{"json", no_argument, NULL, 'j'},
                                       {"merge-tolerance", required_argument, NULL, 'm'},
                                       {"strict", no_argument, NULL, 'S'},
                                       {"cell-to-point", no_argument, NULL, 'c'},
+                                      {"no-displacement", no_argument, NULL, 'd'},
                                       {"subdivide", required_argument, NULL, 's'},
                                       {"help", no_argument, NULL, 'h'},
                                       {NULL, 0, NULL, 0}};

@@ -76,10 +76,15 @@ static char *guess_array(const TetcastDataset *dataset, const char *selector) {
   CliGuess guess = {.word = word}, whole = {.word = selector};
   TetcastDatasetArray array;
   bool known = false;
-  for (int i = 0; cli_vtk()->dataset_array(dataset, i, &array) && !known; i++) {
-    known = !strcmp(array.name, word) || !strcmp(array.name, selector);
-    cli_guess(&guess, array.name);
-    cli_guess(&whole, array.name);
+  for (int i = 0, read = 0; !known; i++) {
+    const bool is_read = cli_vtk()->dataset_array(dataset, i, &array);
+    const char *name = is_read ? array.name : cli_vtk()->dataset_unread(dataset, i - read);
+    read += is_read;
+    if (!name)
+      break;
+    known = !strcmp(name, word) || !strcmp(name, selector);
+    cli_guess(&guess, name);
+    cli_guess(&whole, name);
   }
   char *text = known ? cli_duplicate("") : cli_guess_text(guess.best ? &guess : &whole);
   free(word);

@@ -32,7 +32,7 @@ render 'c d' render good.vtu --array nope
 render "did you mean 'flat'?" render good.vtu --array falt
 render "did you mean 'flat'?" render good.vtu --array falt:mag
 render "did you mean 'c d'?" render good.vtu --array 'cd'
-render "there are: 0 to 2 and mag" render good.vtu --array v:mga
+render "there are: 0 to 2 (x, y, z) and mag" render good.vtu --array v:mga
 refuse 1 "did you mean 'flat'?" converge good.vtu -o report --array fltat --no-plots
 refuse 2 '--array' render good.vtu --array ''
 

@@ -51,10 +51,11 @@ for command in render converge info mesh; do
   for option in $offered; do
     checks=$((checks + 1))
     if "$tetcast" $command $option 2>&1 </dev/null | grep -q 'unknown'; then fail "$command does not take $option"; fi
-    name=${option#--}
-    grep -q -- "'--$name['=]\|'--$name\$" zsh.txt || fail "zsh does not offer $command $option"
-    grep -q -- "seen_subcommand_from $command' -l $name\( \|\$\)" fish.txt || fail "fish does not offer $command $option"
   done
+  in_zsh=$(sed -n "/^    $command)\$/,/;;/p" zsh.txt | grep -o -- "'--[a-z-]*" | tr -d "'" | sort)
+  in_fish=$(sed -n "s/.*seen_subcommand_from $command' -l \([a-z-]*\).*/--\1/p" fish.txt | sort)
+  [ "$in_zsh" = "$offered" ] || fail "zsh and bash offer different options of $command:" $(comm -3 <(echo "$in_zsh") <(echo "$offered"))
+  [ "$in_fish" = "$offered" ] || fail "fish and bash offer different options of $command:" $(comm -3 <(echo "$in_fish") <(echo "$offered"))
 done
 for option in $("$tetcast" render --help | grep -oE -- '--[a-z][a-z-]+' | sort -u); do
   completes render "$option"
@@ -66,6 +67,6 @@ for pair in preset:"$(sed -n "s/.*'render --preset') words='\(.*\)' ;;/\1/p" bas
   background:"$(sed -n "s/.*'render --background') words='\(.*\)' ;;/\1/p" bash.txt)" \
   isa:"$(sed -n "s/.*'render --isa') words='\(.*\)' ;;/\1/p" bash.txt)"; do
   [ -n "${pair#*:}" ] || fail "no words for ${pair%%:*}"
-  for word in ${pair#*:}; do refuse 1 missing.vtu render missing.vtu "--${pair%%:*}" "$word"; done
+  for word in ${pair#*:}; do refuse 2 'no input' render "--${pair%%:*}" "$word"; done
 done
 finish

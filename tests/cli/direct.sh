@@ -39,8 +39,13 @@ has() {
 accept render cube.vtu -o channels.exr --extinction s --emission v:1 --size 30x20 \
   --channels radiance,optical_depth,transmittance,path_length --stats stats.json
 has channels.exr radiance optical_depth transmittance path_length
-grep -q '"isa": "scalar"' stats.json || fail "isa: $(cat stats.json)"
 grep -q '"error": null' stats.json || fail "error: $(cat stats.json)"
+# By the same instructions as other pictures.
+accept render cube.vtu -o usual.exr --array s --size 30x20 --stats usual.json
+isa=$(grep '"isa": ' stats.json)
+[ -n "$isa" ] && [ "$isa" = "$(grep '"isa": ' usual.json)" ] || fail "isa: $(cat stats.json usual.json)"
+accept render cube.vtu -o scalar.exr --extinction s --emission v:1 --size 30x20 --isa scalar --stats scalar.json
+grep -q '"isa": "scalar"' scalar.json || fail "isa: $(cat scalar.json)"
 accept render cube.vtu -o groups.exr --extinction s --emission v --groups --size 30x20
 has groups.exr radiance.0 radiance.1 radiance.2
 accept render cube.vtu -o radiograph.exr --extinction v --groups --size 30x20

@@ -51,7 +51,7 @@ echo '{"input": "cube.vtu", "output": "name.png", "size": [40, 30], "background"
 accept render --scene named.json
 same name.png numbers.png 'a background in a scene'
 warn 'has no alpha' render cube.vtu -o a.jpg --size 9x9 --background transparent
-[ "$("$tetcast" render cube.vtu -o a.jpg --size 9x9 --background transparent 2>&1 | wc -l)" = 1 ] || fail 'no alpha: said twice'
+[ "$("$tetcast" render cube.vtu -o a.jpg --size 9x9 --background transparent 2>&1 | grep -c 'has no alpha')" = 1 ] || fail 'no alpha: said twice'
 refuse 1 'has no alpha' render cube.vtu -o b.jpg --size 9x9 --background transparent --strict
 refuse 1 'opaque background' render cube.vtu -o a.webp --size 9x9 --background '#fff8'
 accept render cube.vtu -o a.webp --size 9x9

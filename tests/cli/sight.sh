@@ -27,10 +27,11 @@ says() {
   checks=$((checks + 1))
   rm -f a.png
   "$tetcast" render "$@" -o a.png $small 2>"$work.err" || fail "exit code $?: $*"
-  [ "$(wc -l <"$work.err")" = 1 ] || fail "not one line: $(cat "$work.err"): $*"
-  grep -F 'tetcast: warning: ' "$work.err" | grep -qF -- "$text" || fail "no warning '$text' in '$(cat "$work.err")': $*"
+  hear
+  [[ $said = *$'\n' && ${said%$'\n'} != *$'\n'* ]] || fail "not one line: $said: $*"
+  [[ $said = *'tetcast: warning: '*"$text"* ]] || fail "no warning '$text' in '$said': $*"
   exists a.png
-  rm -f a.png "$work.err"
+  rm -f a.png
   refuse 1 "$text" render "$@" -o a.png $small --strict
 }
 nothing='the picture shows nothing: '
@@ -53,8 +54,8 @@ says "is too small for a mesh that measures 1.73e-09, or the unit_distance of th
 scalar='nan nan nan nan nan nan nan 0' vtu nan.vtu "$five_tetrahedra" 10
 scalar='0 nan 1 nan 2 3 nan 4' vtu touched.vtu "$five_tetrahedra" 10 # one value of each cell
 for file in nan touched; do
-  warn "${nothing}all cells are transparent, as they touch values of array s that are NaN" render $file.vtu -o a.png $small
-  warn 'values are NaN or infinite' render $file.vtu -o a.png $small
+  warn "${nothing}all cells are transparent, as they touch values of array s that are NaN" render $file.vtu --array s -o a.png $small
+  warn 'values are NaN or infinite' render $file.vtu --array s -o a.png $small
 done
 # It is there, but of the background's colour.
 says "${nothing}what is there has the colours of the background" cube.vtu --transfer white.json

@@ -65,6 +65,14 @@ static void refuse_field(Fixture *fixture, const TetcastDataset *dataset, const 
     fail_msg("'%s' lacks '%s'", fixture->message, words);
 }
 
+static bool is_unread(const TetcastDataset *dataset, const char *name) {
+  const char *unread;
+  for (int i = 0; (unread = tetcast_dataset_unread(dataset, i)); ++i)
+    if (!strcmp(unread, name))
+      return true;
+  return false;
+}
+
 /* The file has `good` and `cell` and a warning that says `words` about `name`, which can't be had; who doesn't ask for
  * it hears nothing of it. */
 static void assert_left_out(Fixture *fixture, const char *path, const char *name, const char *words) {
@@ -77,8 +85,12 @@ static void assert_left_out(Fixture *fixture, const char *path, const char *name
   for (int i = 0; i < 4; ++i)
     assert_true(value_of(fixture, dataset, "good", i) == i + 1);
   assert_true(value_of(fixture, dataset, "cell", 0) == 5);
-  if (!strstr(words, "second"))
+  if (!strstr(words, "second")) {
     refuse_field(fixture, dataset, name, TETCAST_ERROR_DATA, words);
+    assert_true(is_unread(dataset, name));
+  }
+  assert_false(is_unread(dataset, "good"));
+  assert_null(tetcast_dataset_unread(dataset, -1));
   tetcast_dataset_destroy(&dataset);
   dataset = read_only(fixture, path, "good");
   assert_int_equal(fixture->warnings, 0);

@@ -274,6 +274,12 @@ bool tetcast_dataset_array(const TetcastDataset *dataset, int i, TetcastDatasetA
   return true;
 }
 
+const char *tetcast_dataset_unread(const TetcastDataset *dataset, int i) {
+  return dataset && i >= 0 && static_cast<size_t>(i) < dataset->unread.size()
+             ? dataset->unread[static_cast<size_t>(i)].array.name.c_str()
+             : nullptr;
+}
+
 int64_t tetcast_dataset_point_count(const TetcastDataset *dataset) { return dataset ? dataset->point_count : 0; }
 int64_t tetcast_dataset_cell_count(const TetcastDataset *dataset) { return dataset ? dataset->cell_count : 0; }
 
