@@ -130,7 +130,7 @@ static void bounds_hold(void **state) {
   fixture_end(&fixture);
 }
 
-/* Two cubes turned askew, one on top of the other and not connected, with different fields, seen along the faces between them and along their
+/* Two cubes turned askew, one a hair above the other, so that they are not connected, with different fields, seen along the faces between them and along their
  * sides, rays a little to either side, exactly along or at an angle at which they enter and leave through these faces: vertices in single precision
  * are not in one plane any more, and depths there are off by much. */
 static void edge_on(void **state) {
@@ -146,7 +146,7 @@ static void edge_on(void **state) {
     const int64_t j = i % one.vertex_count;
     double *p = &two.vertices[3 * i];
     memcpy(p, &one.vertices[3 * j], 3 * sizeof *p);
-    p[1] += i >= one.vertex_count;
+    p[1] += i >= one.vertex_count ? 1 + 1e-13 : 0;
     turn(p);
     two.values[i] = i < one.vertex_count ? 0.9 : 0.1 + 0.1 * one.values[j];
   }
