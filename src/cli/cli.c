@@ -5,7 +5,6 @@
 #include <getopt.h>
 #include <math.h>
 #include <poll.h>
-#include <pthread.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -14,158 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "progress.h"
-
-static struct {
-  bool quiet;
-  const char *place, *hint;
-  bool failed; /* an error has been shown; guarded by the lock of stderr, as is the list */
-  bool once, strict;
-  bool refused; /* a warning was an error */
-  char **warnings; /* that were shown, without their digits */
-  int count, capacity;
-  bool held;
-  pthread_t holder;
-  struct Message *kept; /* of other threads */
-  int kept_count, kept_capacity;
-} messages;
-
-typedef struct Message {
-  enum { MESSAGE_ERROR, MESSAGE_WARNING, MESSAGE_NOTE } kind;
-  char *place, *text;
-} Message;
-
-void cli_set_quiet(bool quiet) {
-  messages.quiet = quiet;
-}
-
-void cli_set_strict(bool strict) {
-  messages.strict = strict;
-}
-
-int cli_verdict(int code) {
-  return code == CLI_DONE && messages.refused ? CLI_FAILED : code;
-}
-
-void cli_warn_once(void) {
-  messages.once = true;
-}
-
-bool cli_quiet(void) {
-  return messages.quiet;
-}
-
-void cli_set_place(const char *place) {
-  messages.place = place;
-}
-
-void cli_set_hint(const char *hint) {
-  messages.hint = hint;
-}
-
-/* One call of fprintf, as lines may come from several threads; control characters of file and array names stay out of
- * the line. */
-static void show(const char *kind, const char *place, const char *text) {
-  char *line = cli_print("%s%s%s", place ? place : "", place ? ": " : "", text);
-  for (char *c = line; *c; c++)
-    if (iscntrl((unsigned char)*c))
-      *c = ' ';
-  cli_progress_clear();
-  fprintf(stderr, "tetcast: %s: %s\n", kind, line);
-  free(line);
-}
-
-/* Keeps a message for later where another thread holds them; false: it is to be shown. */
-static bool keep(int kind, const char *place, const char *text) {
-  if (!messages.held || pthread_equal(messages.holder, pthread_self()))
-    return false;
-  messages.kept =
-      cli_grow(messages.kept, messages.kept_count, &messages.kept_capacity, sizeof *messages.kept);
-  messages.kept[messages.kept_count++] =
-      (Message){kind, place ? cli_duplicate(place) : NULL, cli_duplicate(text)};
-  return true;
-}
-
-static void show_error(const char *place, const char *text) {
-  flockfile(stderr);
-  if (!keep(MESSAGE_ERROR, place, text)) {
-    if (!cli_interrupted() && !messages.failed)
-      show("error", place, text);
-    messages.failed = true;
-  }
-  funlockfile(stderr);
-}
-
-/* Whether a warning of these words has been shown. */
-static bool is_repeated(const char *text) {
-  char *words = cli_duplicate(text), *end = words;
-  for (const char *c = text; *c; c++)
-    if (!isdigit((unsigned char)*c))
-      *end++ = *c;
-  *end = '\0';
-  for (int i = 0; i < messages.count; i++) {
-    if (!strcmp(messages.warnings[i], words)) {
-      free(words);
-      return true;
-    }
-  }
-  messages.warnings = cli_grow(messages.warnings, messages.count, &messages.capacity, sizeof *messages.warnings);
-  messages.warnings[messages.count++] = words;
-  return false;
-}
-
-static void show_warning(const char *text) {
-  flockfile(stderr);
-  if (messages.strict) {
-    messages.refused = true;
-    show_error(messages.place, text);
-  } else if (keep(MESSAGE_WARNING, NULL, text)) {
-    /* later */
-  } else if (!messages.quiet && !(messages.once && is_repeated(text))) {
-    show("warning", NULL, text);
-  }
-  funlockfile(stderr);
-}
-
-static void show_note(const char *text) {
-  flockfile(stderr);
-  if (!keep(MESSAGE_NOTE, NULL, text) && !messages.quiet && !messages.refused && !messages.failed)
-    show("note", NULL, text);
-  funlockfile(stderr);
-}
-
-void cli_messages_hold(bool hold) {
-  flockfile(stderr);
-  messages.held = hold;
-  messages.holder = pthread_self();
-  for (int i = 0; !hold && i < messages.kept_count; i++) {
-    Message *message = &messages.kept[i];
-    if (message->kind == MESSAGE_ERROR)
-      show_error(message->place, message->text);
-    else if (message->kind == MESSAGE_WARNING)
-      show_warning(message->text);
-    else
-      show_note(message->text);
-    free(message->place);
-    free(message->text);
-  }
-  if (!hold)
-    messages.kept_count = 0;
-  funlockfile(stderr);
-}
-
-static void receive(void *user, TetcastSeverity severity, const char *text) {
-  (void)user;
-  if (severity == TETCAST_SEVERITY_ERROR) {
-    char *whole = cli_print("%s%s", text, messages.hint ? messages.hint : "");
-    show_error(messages.place, whole);
-    free(whole);
-  }
-  if (severity == TETCAST_SEVERITY_WARNING)
-    show_warning(text);
-}
-
-static char *print_list(const char *format, va_list list) {
+char *cli_print_list(const char *format, va_list list) {
   char *text = NULL;
   if (vasprintf(&text, format, list) < 0) {
     fputs("tetcast: error: out of memory\n", stderr);
@@ -177,42 +25,15 @@ static char *print_list(const char *format, va_list list) {
 char *cli_print(const char *format, ...) {
   va_list list;
   va_start(list, format);
-  char *text = print_list(format, list);
+  char *text = cli_print_list(format, list);
   va_end(list);
   return text;
-}
-
-void cli_error(const char *format, ...) {
-  va_list list;
-  va_start(list, format);
-  char *text = print_list(format, list);
-  va_end(list);
-  show_error(NULL, text);
-  free(text);
-}
-
-void cli_warning(const char *format, ...) {
-  va_list list;
-  va_start(list, format);
-  char *text = print_list(format, list);
-  va_end(list);
-  show_warning(text);
-  free(text);
-}
-
-void cli_note(const char *format, ...) {
-  va_list list;
-  va_start(list, format);
-  char *text = print_list(format, list);
-  va_end(list);
-  show_note(text);
-  free(text);
 }
 
 int cli_usage_error(const char *command, const char *format, ...) {
   va_list list;
   va_start(list, format);
-  char *text = print_list(format, list);
+  char *text = cli_print_list(format, list);
   va_end(list);
   cli_error("%s (see tetcast %s%s--help)", text, command, *command ? " " : "");
   free(text);
@@ -294,24 +115,6 @@ int cli_bad_option(const char *command, int result, int argc, char **argv, const
   if (optopt != 0)
     return cli_usage_error(command, "option %.*s takes no argument", length, option);
   return unknown_option(command, option, length, option + 2, words);
-}
-
-TetcastContext *cli_context_create(int threads) {
-  TetcastContextDesc desc = tetcast_context_desc_default();
-  desc.threads = threads;
-  desc.message = receive;
-  TetcastContext *context = NULL;
-  const TetcastStatus status = tetcast_context_create(&desc, &context);
-  if (status != TETCAST_OK)
-    cli_failed(status);
-  return context;
-}
-
-int cli_failed(TetcastStatus status) {
-  if (cli_interrupted())
-    return 128 + cli_interrupted();
-  show_error(messages.place, tetcast_status_string(status));
-  return CLI_FAILED;
 }
 
 bool cli_parse_number(const char *text, double *value) {

@@ -4,6 +4,7 @@
 #ifndef TETCAST_CLI_H
 #define TETCAST_CLI_H
 
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -85,6 +86,7 @@ char *cli_duplicate(const char *text);
 /* An array of elements of this size with room for one more than its `count`: `data` itself, or what takes its place. */
 void *cli_grow(void *data, int count, int *capacity, size_t size);
 char *cli_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
+char *cli_print_list(const char *format, va_list list);
 
 /* Seconds of a clock that only goes forward. */
 double cli_seconds(void);

@@ -11,6 +11,7 @@
 #include "folder.h"
 #include "gnuplot.h"
 #include "progress.h"
+#include "render_parse.h"
 
 static const char *const report_files[] = {"report.csv",
                                            "report.md",

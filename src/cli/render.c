@@ -12,16 +12,10 @@
 #include "file.h"
 #include "fileset.h"
 #include "progress.h"
-#include "render.h"
+#include "render_parse.h"
 #include "scene_file.h"
 #include "series.h"
 #include "sight.h"
-
-char *render_default_output(const char *input) {
-  const char *name = cli_path_name(input);
-  const char *dot = strrchr(name, '.');
-  return cli_print("%.*s.png", (int)(dot && dot != name ? (size_t)(dot - name) : strlen(name)), name);
-}
 
 /* Removes what killed runs have left where this one writes. */
 static void tidy(const RenderOptions *options) {
@@ -35,7 +29,7 @@ static void tidy(const RenderOptions *options) {
 static int check(Run *run) {
   RenderOptions *options = &run->options;
   if (!options->output)
-    options->output = render_default_output(options->input);
+    options->output = picture_default_output(options->input);
   FileSet files = {0};
   fileset_add_options(&files, options);
   if (!series_wanted(options)) /* else it has many names */
@@ -93,12 +87,6 @@ static void *check_image_aside(void *argument) {
   return NULL;
 }
 
-void render_await_image(Run *run) {
-  if (run->image_pending)
-    pthread_join(run->image_thread, NULL);
-  run->image_pending = false;
-}
-
 /* Loading the image library takes about as long as reading a large mesh, and both are work for one processor: they are
  * done at the same time. */
 static int begin_image(Run *run) {
@@ -124,92 +112,6 @@ static int load(Run *run) {
   return code;
 }
 
-int render_create_frame(Run *run) {
-  const RenderOptions *options = &run->options;
-  TetcastFrameDesc desc = tetcast_frame_desc_default();
-  desc.width = (int64_t)options->size[0];
-  desc.height = (int64_t)options->size[1];
-  desc.type = options->pixel_type == TETCAST_PIXEL_DOUBLE ? TETCAST_TYPE_FLOAT64 : TETCAST_TYPE_FLOAT32;
-  desc.channels = render_options_channels(options);
-  if (tetcast_scene_groups(run->stage.scene) > 0)
-    desc.groups = tetcast_scene_groups(run->stage.scene);
-  const TetcastStatus status = tetcast_frame_create(run->stage.context, &desc, &run->frame);
-  return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
-}
-
-/* Whether colours may come out above 1: radiance, or a transfer function that has them. */
-static bool may_shine(const Run *run) {
-  if (render_options_given(&run->options, OPTION_EMISSION))
-    return true;
-  int64_t count = 0;
-  const TetcastTransferFunction *transfer_function = run->stage.transfer_function;
-  const double *color = transfer_function ? tetcast_transfer_function_color(transfer_function, &count) : NULL;
-  for (int64_t i = 0; i < 4 * count; i++)
-    if (i % 4 > 0 && color[i] > 1)
-      return true;
-  return false;
-}
-
-/* Radiance has no scale of its own: what an integer pixel makes of it may be all white or all black. */
-static void check_brightness(const Run *run) {
-  if (render_options_floating(&run->options) || !may_shine(run))
-    return;
-  const float *pixels = tetcast_frame_pixels(run->frame);
-  const int64_t count = tetcast_frame_width(run->frame) * tetcast_frame_height(run->frame);
-  float brightest = 0;
-  for (int64_t i = 0; i < 4 * count; i++)
-    if (i % 4 < 3 && pixels[i] > brightest)
-      brightest = pixels[i];
-  const bool radiance = render_options_given(&run->options, OPTION_EMISSION);
-  if (brightest > 1)
-    cli_warning("%s up to %g: above 1 all is white in integer pixels; .exr and .tif hold it as it is",
-                radiance ? "radiance" : "colours", (double)brightest);
-  else if (radiance && brightest > 0 && brightest < 1.0f / 255)
-    cli_warning("radiance up to %g: below 1/255 all is black in integer pixels; .exr and .tif hold it as it is", (double)brightest);
-}
-
-int render_frame(Run *run) {
-  RunStats *stats = &run->stats;
-  stats->threads = tetcast_context_threads(run->stage.context);
-  stats->repeats = (int)run->options.repeat;
-  if (!stats->render_seconds)
-    stats->render_seconds = cli_allocate(sizeof(double) * (size_t)stats->repeats);
-  TetcastRenderDesc desc = tetcast_render_desc_default();
-  desc.samples = (int)run->options.samples;
-  desc.isa = (TetcastIsa)run->options.isa;
-  desc.tolerance = stats->tolerance = run->options.tolerance;
-  if (run->options.integrator)
-    render_option_integrator(run->options.integrator, &desc.integrator, &desc.integrator_n);
-  for (int i = 0; i < stats->repeats; i++) {
-    const double start = cli_seconds();
-    desc.progress = cli_progress("rendering");
-    const TetcastStatus status =
-        tetcast_scene_render(run->stage.scene, &run->stage.camera, &desc, run->frame, &stats->render);
-    stats->render_seconds[i] = cli_seconds() - start;
-    cli_progress_clear();
-    if (status != TETCAST_OK || cli_interrupted())
-      return cli_failed(status);
-  }
-  if (stats->render.lost > 0)
-    cli_warning(
-        "%lld of %lld rays were lost on their way through the mesh: the picture has faults there, please report this",
-        (long long)stats->render.lost, (long long)stats->render.rays);
-  check_brightness(run);
-  return cli_verdict(CLI_DONE);
-}
-
-int render_write_image(Run *run, const char *path) {
-  const Stage *stage = &run->stage;
-  render_await_image(run);
-  const double start = cli_seconds();
-  const TetcastStatus status = run->image->image_write(stage->context, path, run->frame, &run->image_desc);
-  run->stats.write_seconds = cli_seconds() - start;
-  run->stats.read_seconds = stage->read_seconds;
-  run->stats.prepare_seconds = stage->prepare_seconds;
-  run->stats.volume = stage->info;
-  return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
-}
-
 /* A picture in which nothing can be seen is worth a word. */
 static int check_sight(const Run *run) {
   char *fault = sight_fault(run);
@@ -222,7 +124,7 @@ static int check_sight(const Run *run) {
 static int write_files(Run *run) {
   const RenderOptions *options = &run->options;
   const Stage *stage = &run->stage;
-  const int code = render_write_image(run, options->output);
+  const int code = picture_write(run, options->output);
   if (code != CLI_DONE)
     return code;
   if (options->save_scene && !scene_file_write(options, stage->array, &stage->camera, stage->transfer_function))
@@ -242,9 +144,9 @@ static int perform(Run *run) {
   if (code == CLI_DONE)
     code = load(run);
   if (code == CLI_DONE)
-    code = render_create_frame(run);
+    code = picture_create_frame(run);
   if (code == CLI_DONE)
-    code = render_frame(run);
+    code = picture_render(run);
   if (code == CLI_DONE)
     code = check_sight(run);
   if (code == CLI_DONE)
@@ -260,7 +162,7 @@ int tetcast_cli_render(int argc, char **argv) {
     cli_set_strict(run.options.strict);
     code = perform(&run);
   }
-  render_await_image(&run);
+  picture_await_image(&run);
   tetcast_frame_destroy(&run.frame);
   stage_release(&run.stage);
   free(run.stats.render_seconds);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "render_options.h"
+#include "render_parse.h"
 
 const char render_help[] =
     "Usage: tetcast render INPUT [-o OUTPUT] [options]\n"
@@ -31,7 +31,7 @@ const char render_help[] =
     "      --pixel-type T      uint8 uint16 half float double; default: PNG, JPEG uint8, EXR half, TIFF float\n"
     "      --integrator I      exact (default), midpoint:N, trapezoid:N, gauss:N or table:N\n"
     "      --tolerance EPS     error allowed per channel, sooner done; default 0: exact\n"
-    "      --channels LIST     error: its bound; with extinction or emission: radiance,optical_depth,\n"
+    "      --channels LIST     error: its bound; with extinction or emission also radiance,optical_depth,\n"
     "                          transmittance,path_length; .exr and .tif\n"
     "      --traversal T       shell (default) or faces         --isa SET       at most: scalar … avx512\n"
     "      --threads N         0, the default: all              --repeat N      for timing\n"

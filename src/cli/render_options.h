@@ -144,9 +144,4 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
  * of an option of the same source that excludes it. */
 const char *render_options_claim(RenderOptions *options, OptionId id);
 
-/* Reads the command line and the scene file it names. -1 to go on, else the exit code. */
-int render_options_parse(RenderOptions *options, int argc, char **argv);
-
-extern const char render_help[], converge_help[];
-
 #endif

@@ -83,7 +83,7 @@ static char *name_of(const RenderOptions *options, int64_t step) {
   if (!is_all(options))
     return cli_duplicate(output);
   if (options->inputs && !render_options_given(options, OPTION_OUTPUT)) /* which have numbers already */
-    return render_default_output(options->inputs[step]);
+    return picture_default_output(options->inputs[step]);
   const char *dot = strrchr(cli_path_name(output), '.');
   const int stem = (int)(dot ? (size_t)(dot - output) : strlen(output));
   return cli_print("%.*s.%04lld%s", stem, output, (long long)step, output + stem);
@@ -251,7 +251,7 @@ static int check_former(Series *series, const char *path) {
   int code = folder_begin(&folder) ? CLI_DONE : CLI_FAILED;
   char *again = code == CLI_DONE ? cli_print("%s/%s", folder.temporary, name) : NULL;
   if (code == CLI_DONE)
-    code = render_write_image(series->run, again);
+    code = picture_write(series->run, again);
   if (code == CLI_DONE && !same_content(again, path)) {
     cli_error("--resume: '%s' is not the picture that would be made now: settings or data were others; without --resume all are made anew",
               path);
@@ -277,7 +277,7 @@ static int render_step(Series *series, int64_t step, const char *path, bool kept
     code = stage_shade(stage, &run->options, stage->range);
   cli_progress_part(series->label, done + 0.3 / steps, done + 1 / steps);
   if (code == CLI_DONE)
-    code = render_frame(run);
+    code = picture_render(run);
   if (code == CLI_DONE && !series->shown) { /* a single step may well be empty */
     char *fault = sight_fault(run);
     series->shown = !fault;
@@ -287,7 +287,7 @@ static int render_step(Series *series, int64_t step, const char *path, bool kept
       series->fault = fault;
   }
   if (code == CLI_DONE)
-    code = kept ? check_former(series, path) : render_write_image(run, path);
+    code = kept ? check_former(series, path) : picture_write(run, path);
   return code;
 }
 
@@ -353,11 +353,11 @@ int series_perform(Run *run) {
   Series series = {.run = run, .loaded = -1, .entries = json_array()};
   run->stage.of_series = true;
   int code = find_steps(&series);
-  render_await_image(run);
+  picture_await_image(run);
   if (code == CLI_DONE)
     code = find_scene(&series);
   if (code == CLI_DONE)
-    code = render_create_frame(run);
+    code = picture_create_frame(run);
   if (code == CLI_DONE)
     code = render_steps(&series);
   if (code == CLI_DONE)

@@ -3,7 +3,7 @@
 #ifndef TETCAST_CLI_SERIES_H
 #define TETCAST_CLI_SERIES_H
 
-#include "render.h"
+#include "picture.h"
 
 /* Whether the options are about more than one step, or one as it is among the others. */
 bool series_wanted(const RenderOptions *options);

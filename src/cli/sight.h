@@ -3,7 +3,7 @@
 #ifndef TETCAST_CLI_SIGHT_H
 #define TETCAST_CLI_SIGHT_H
 
-#include "render.h"
+#include "picture.h"
 
 /* Looks at the picture that has been rendered. NULL: something can be seen, and not only the outermost layer of a wall.
  * Else one sentence about why not, for free(). That costs a look at pixels, as a rule at a few; only where they show

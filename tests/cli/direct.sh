@@ -105,7 +105,7 @@ for other in '--array s' '--preset inferno' '--range 0,1' '--transfer white.json
 done
 refuse 2 'there is only exact' render cube.vtu -o a.png --emission s --integrator midpoint:4
 accept render cube.vtu -o a.exr --emission s --integrator exact --tolerance 1e-3 --size 9x9
-refuse 2 'not possible' render cube.vtu -o a.exr --emission s --channels error
+accept render cube.vtu -o a.exr --emission s --channels error,radiance --size 9x9
 refuse 2 'without --extinction or --emission' render cube.vtu -o a.exr --channels radiance
 refuse 2 'without --extinction or --emission' render cube.vtu -o a.exr --channels path_length,error
 refuse 2 'needs --emission' render cube.vtu -o a.exr --extinction s --channels radiance

@@ -53,21 +53,12 @@ struct Pixels {
   }
 };
 
-constexpr struct {
-  TetcastChannel channel;
-  const char *name;
-  bool of_groups;
-} channel_table[] = {{TETCAST_CHANNEL_RADIANCE, "radiance", true},
-                     {TETCAST_CHANNEL_OPTICAL_DEPTH, "optical_depth", true},
-                     {TETCAST_CHANNEL_TRANSMITTANCE, "transmittance", true},
-                     {TETCAST_CHANNEL_PATH_LENGTH, "path_length", false},
-                     {TETCAST_CHANNEL_ERROR, "error", false}};
-
 std::vector<Extra> extras_of(const TetcastFrame *frame) {
   std::vector<Extra> extras;
-  for (const auto &entry : channel_table)
-    if (const void *data = tetcast_frame_channel(frame, entry.channel))
-      extras.push_back({entry.name, data, entry.of_groups ? tetcast_frame_groups(frame) : 1});
+  const TetcastChannelInfo *info;
+  for (int i = 0; (info = tetcast_channel_info(i)); ++i)
+    if (const void *data = tetcast_frame_channel(frame, info->channel))
+      extras.push_back({info->name, data, info->of_groups ? tetcast_frame_groups(frame) : 1});
   return extras;
 }
 

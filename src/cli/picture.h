@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A run of tetcast render, and what one picture and a series of them share. */
-#ifndef TETCAST_CLI_RENDER_H
-#define TETCAST_CLI_RENDER_H
+/* A picture of a run of tetcast render: what one picture and a series of them share. */
+#ifndef TETCAST_CLI_PICTURE_H
+#define TETCAST_CLI_PICTURE_H
 
 #include <pthread.h>
 #include <semaphore.h>
@@ -25,14 +25,14 @@ typedef struct Run {
 } Run;
 
 /* Each step returns an exit code. */
-int render_create_frame(Run *run);
-int render_frame(Run *run);
-int render_write_image(Run *run, const char *path);
+int picture_create_frame(Run *run);
+int picture_render(Run *run);
+int picture_write(Run *run, const char *path);
 
 /* The name of the input with .png, in the current folder; for free(). */
-char *render_default_output(const char *input);
+char *picture_default_output(const char *input);
 
 /* Waits until the image library is loaded and the output has been checked, which is done beside the first reading. */
-void render_await_image(Run *run);
+void picture_await_image(Run *run);
 
 #endif

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "picture.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli.h"
+#include "file.h"
+#include "progress.h"
+
+char *picture_default_output(const char *input) {
+  const char *name = cli_path_name(input);
+  const char *dot = strrchr(name, '.');
+  return cli_print("%.*s.png", (int)(dot && dot != name ? (size_t)(dot - name) : strlen(name)), name);
+}
+
+void picture_await_image(Run *run) {
+  if (run->image_pending)
+    pthread_join(run->image_thread, NULL);
+  run->image_pending = false;
+}
+
+int picture_create_frame(Run *run) {
+  const RenderOptions *options = &run->options;
+  TetcastFrameDesc desc = tetcast_frame_desc_default();
+  desc.width = (int64_t)options->size[0];
+  desc.height = (int64_t)options->size[1];
+  desc.type = options->pixel_type == TETCAST_PIXEL_DOUBLE ? TETCAST_TYPE_FLOAT64 : TETCAST_TYPE_FLOAT32;
+  desc.channels = render_options_channels(options);
+  if (tetcast_scene_groups(run->stage.scene) > 0)
+    desc.groups = tetcast_scene_groups(run->stage.scene);
+  const TetcastStatus status = tetcast_frame_create(run->stage.context, &desc, &run->frame);
+  return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
+}
+
+/* Whether colours may come out above 1: radiance, or a transfer function that has them. */
+static bool may_shine(const Run *run) {
+  if (render_options_given(&run->options, OPTION_EMISSION))
+    return true;
+  int64_t count = 0;
+  const TetcastTransferFunction *transfer_function = run->stage.transfer_function;
+  const double *color = transfer_function ? tetcast_transfer_function_color(transfer_function, &count) : NULL;
+  for (int64_t i = 0; i < 4 * count; i++)
+    if (i % 4 > 0 && color[i] > 1)
+      return true;
+  return false;
+}
+
+/* Radiance has no scale of its own: what an integer pixel makes of it may be all white or all black. */
+static void check_brightness(const Run *run) {
+  if (render_options_floating(&run->options) || !may_shine(run))
+    return;
+  const float *pixels = tetcast_frame_pixels(run->frame);
+  const int64_t count = tetcast_frame_width(run->frame) * tetcast_frame_height(run->frame);
+  float brightest = 0;
+  for (int64_t i = 0; i < 4 * count; i++)
+    if (i % 4 < 3 && pixels[i] > brightest)
+      brightest = pixels[i];
+  const bool radiance = render_options_given(&run->options, OPTION_EMISSION);
+  if (brightest > 1)
+    cli_warning("%s up to %g: above 1 all is white in integer pixels; .exr and .tif hold it as it is",
+                radiance ? "radiance" : "colours", (double)brightest);
+  else if (radiance && brightest > 0 && brightest < 1.0f / 255)
+    cli_warning("radiance up to %g: below 1/255 all is black in integer pixels; .exr and .tif hold it as it is", (double)brightest);
+}
+
+int picture_render(Run *run) {
+  RunStats *stats = &run->stats;
+  stats->threads = tetcast_context_threads(run->stage.context);
+  stats->repeats = (int)run->options.repeat;
+  if (!stats->render_seconds)
+    stats->render_seconds = cli_allocate(sizeof(double) * (size_t)stats->repeats);
+  TetcastRenderDesc desc = tetcast_render_desc_default();
+  desc.samples = (int)run->options.samples;
+  desc.isa = (TetcastIsa)run->options.isa;
+  desc.tolerance = stats->tolerance = run->options.tolerance;
+  if (run->options.integrator)
+    render_option_integrator(run->options.integrator, &desc.integrator, &desc.integrator_n);
+  for (int i = 0; i < stats->repeats; i++) {
+    const double start = cli_seconds();
+    desc.progress = cli_progress("rendering");
+    const TetcastStatus status =
+        tetcast_scene_render(run->stage.scene, &run->stage.camera, &desc, run->frame, &stats->render);
+    stats->render_seconds[i] = cli_seconds() - start;
+    cli_progress_clear();
+    if (status != TETCAST_OK || cli_interrupted())
+      return cli_failed(status);
+  }
+  if (stats->render.lost > 0)
+    cli_warning(
+        "%lld of %lld rays were lost on their way through the mesh: the picture has faults there, please report this",
+        (long long)stats->render.lost, (long long)stats->render.rays);
+  check_brightness(run);
+  return cli_verdict(CLI_DONE);
+}
+
+int picture_write(Run *run, const char *path) {
+  const Stage *stage = &run->stage;
+  picture_await_image(run);
+  const double start = cli_seconds();
+  const TetcastStatus status = run->image->image_write(stage->context, path, run->frame, &run->image_desc);
+  run->stats.write_seconds = cli_seconds() - start;
+  run->stats.read_seconds = stage->read_seconds;
+  run->stats.prepare_seconds = stage->prepare_seconds;
+  run->stats.volume = stage->info;
+  return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
+}

@@ -1,0 +1,281 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "render_parse.h"
+
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <tetcast/transfer_function.h>
+
+#include "cli.h"
+#include "color.h"
+#include "completion.h"
+#include "render_table.h"
+#include "scene_file.h"
+#include "view.h"
+
+static const char *command_name(const RenderOptions *options) {
+  return options->command == COMMAND_RENDER ? "render" : "converge";
+}
+
+/* What of coefficients and what of a transfer function doesn't go together. NULL: nothing. */
+static const char *find_mixture(const RenderOptions *options) {
+  const uint32_t channels = render_options_channels(options);
+  if (!render_options_direct(options)) {
+    if (render_options_groups(options))
+      return "--groups: needs --extinction or --emission";
+    const TetcastChannelInfo *info = NULL;
+    for (int i = 0; (info = tetcast_channel_info(i)) && !(channels & (uint32_t)info->channel && info->needs_coefficients);)
+      i++;
+    return info ? "--channels: only error is possible without --extinction or --emission" : NULL;
+  }
+  if (options->integrator && strcmp(options->integrator, "exact"))
+    return "--integrator: with --extinction or --emission there is only exact";
+  if (channels & TETCAST_CHANNEL_RADIANCE && !render_options_given(options, OPTION_EMISSION))
+    return "--channels radiance: needs --emission";
+  if (channels & (TETCAST_CHANNEL_OPTICAL_DEPTH | TETCAST_CHANNEL_TRANSMITTANCE) && !render_options_given(options, OPTION_EXTINCTION))
+    return "--channels optical_depth, transmittance: need --extinction";
+  return NULL;
+}
+
+/* What is wrong with options that are in order one by one (for free()), NULL: nothing. */
+static char *find_fault(const RenderOptions *options) {
+  const char *view = view_fault(options);
+  if (!view)
+    view = find_mixture(options);
+  if (view)
+    return cli_duplicate(view);
+  TetcastIntegrator integrator = TETCAST_INTEGRATOR_EXACT;
+  int n;
+  if (options->integrator)
+    render_option_integrator(options->integrator, &integrator, &n);
+  if (integrator != TETCAST_INTEGRATOR_EXACT && (options->tolerance > 0 || options->channels))
+    return cli_print("%s: only the exact integrator knows its error, not %s",
+                     options->channels ? "--channels error" : "--tolerance", options->integrator);
+  if (!render_options_channels(options))
+    return NULL;
+  const char *output = options->output ? options->output : ".png", *asked = options->channels ? "--channels " : "--groups";
+  const char *list = options->channels ? options->channels : "";
+  if (!render_option_has_extension(output, ".exr") && !render_option_is_tiff(output))
+    return cli_print("%s%s: only .exr and .tif hold more channels than colour and alpha, not %s", asked, list,
+                     options->output ? output : "the default, a .png");
+  return render_options_floating(options)
+           ? NULL
+           : cli_print("%s%s: needs floating-point pixels, not %s", asked, list,
+                       render_option_choice(OPTION_PIXEL_TYPE, options->pixel_type));
+}
+
+static int set_from_text(RenderOptions *options, OptionId id, const char *text) {
+  OptionValue value = {.text = text};
+  if (render_table[id].kind == KIND_NUMBERS || render_table[id].kind == KIND_INTEGERS) {
+    value.count = cli_parse_numbers(text, id == OPTION_SIZE ? 'x' : ',', render_table[id].most, value.numbers);
+    if (value.count > 0 || (id != OPTION_RANGE && id != OPTION_BACKGROUND)) /* which may be words */
+      value.text = NULL;
+  } else if (render_table[id].kind == KIND_FLAG) {
+    value.count = 1;
+    value.numbers[0] = 1;
+  }
+  const char *other = render_options_claim(options, id);
+  if (other)
+    return cli_usage_error(command_name(options), "--%s and --%s exclude each other", render_table[id].name, other);
+  const char *reason = render_options_set(options, id, &value);
+  return reason ? cli_usage_error(command_name(options), "--%s %s: %s", render_table[id].name, text, reason) : -1;
+}
+
+/* A series, a single file, or a usage error: two files that are neither. */
+static int set_inputs(RenderOptions *options, int count, char **paths) {
+  const char *command = command_name(options);
+  render_options_claim(options, OPTION_INPUT);
+  for (int i = 0; i < count; i++)
+    if (!*paths[i])
+      return cli_usage_error(command, "the input is '': expected a path");
+  if (count > 1 && options->command == COMMAND_CONVERGE)
+    return cli_usage_error(command, "more than one input: '%s' and '%s'; a report is about one step", paths[0],
+                           paths[1]);
+  if (render_options_set_inputs(options, count, (const char *const *)paths))
+    return -1;
+  return cli_usage_error(
+      command,
+      "more than one input: '%s' and '%s'; steps of a series are numbered (step_1.vtu step_2.vtu), and parts of one "
+      "mesh are read by a file that lists them (.pvtu, .vtm or .pvd)",
+      paths[0], paths[1]);
+}
+
+enum { WORD_HELP = 'h', WORD_OUTPUT = 'o', WORD_OPTION = 256 };
+
+/* What getopt_long() is to know of a command's options, and which they are; ids may be NULL. */
+static void list_words(RenderCommand command, struct option words[OPTION_COUNT + 2], OptionId ids[OPTION_COUNT]) {
+  int count = 0;
+  for (int id = 0; id < OPTION_COUNT; id++) {
+    if (id == OPTION_INPUT || !render_option_of_command((OptionId)id, command))
+      continue;
+    if (ids)
+      ids[count] = (OptionId)id;
+    words[count++] = (struct option){render_table[id].name, render_table[id].kind == KIND_FLAG ? no_argument : required_argument,
+                                     NULL, WORD_OPTION + id};
+  }
+  words[count++] = (struct option){"help", no_argument, NULL, WORD_HELP};
+  words[count] = (struct option){NULL, 0, NULL, 0};
+}
+
+/* The words of the command line; with `scene_only` everything but the options --scene and --help is left for later. */
+static int parse_words(RenderOptions *options, int argc, char **argv, bool scene_only) {
+  struct option words[OPTION_COUNT + 2];
+  list_words(options->command, words, NULL);
+
+  optind = 0; /* getopt starts anew */
+  int code;
+  while ((code = getopt_long(argc, argv, ":ho:", words, NULL)) != -1) {
+    if (code == '?' || code == ':')
+      return cli_bad_option(command_name(options), code, argc, argv, words);
+    if (code == WORD_HELP) {
+      fputs(options->command == COMMAND_RENDER ? render_help : converge_help, stdout);
+      return cli_finish_output();
+    }
+    const OptionId id = code == WORD_OUTPUT ? OPTION_OUTPUT : (OptionId)(code - WORD_OPTION);
+    if (code == WORD_OUTPUT && !strcmp(optarg, "utput"))
+      return cli_usage_error(command_name(options), "unknown option -output; did you mean --output?");
+    if (scene_only != (id == OPTION_SCENE))
+      continue;
+    const int result = set_from_text(options, id, optarg);
+    if (result >= 0)
+      return result;
+  }
+  if (scene_only)
+    return -1;
+  return optind < argc ? set_inputs(options, argc - optind, argv + optind) : -1;
+}
+
+/* A scene file states a picture; what converge takes of it is what is seen, at its own size but in the shape of the picture. */
+static void take_scene(RenderOptions *options) {
+  if (options->command == COMMAND_RENDER)
+    return;
+  const RenderOptions standard = render_options_default(options->command);
+  if (render_options_given(options, OPTION_SIZE)) {
+    const double pixels = standard.size[0] * standard.size[1];
+    const double aspect = options->size[0] / options->size[1];
+    options->size[0] = fmin(fmax(round(sqrt(pixels * aspect)), 1), 1 << 20);
+    options->size[1] = fmin(fmax(round(sqrt(pixels / aspect)), 1), 1 << 20);
+  }
+  options->repeat = standard.repeat;
+  for (int id = 0; id < OPTION_COUNT; id++)
+    if (id == OPTION_OUTPUT || !render_option_of_command((OptionId)id, options->command)) {
+      options->given &= ~BIT(id);
+      if (render_table[id].kind == KIND_TEXT || render_table[id].kind == KIND_PATH) {
+        char **text = (char **)((char *)options + render_table[id].at);
+        free(*text);
+        *text = NULL;
+      }
+    }
+  options->tolerance = standard.tolerance;
+}
+
+/* What of the command line is missing or has no use. -1: nothing, else the exit code. */
+static int check_use(const RenderOptions *options) {
+  if (options->command == COMMAND_CONVERGE && !options->output)
+    return cli_usage_error("converge", "no folder for the report given: -o REPORTDIR");
+  if (options->command == COMMAND_CONVERGE && options->time && !strcmp(options->time, "all"))
+    return cli_usage_error("converge", "--time all: expected a single step");
+  if (options->command == COMMAND_CONVERGE && render_options_range(options) == RANGE_SERIES)
+    return cli_usage_error("converge", "--range series: expected two numbers, LO not above HI, or step");
+  char *mistaken = options->input ? scene_file_mistaken(options->input) : NULL;
+  const int result = mistaken ? cli_usage_error(command_name(options), "%s", mistaken) : -1;
+  free(mistaken);
+  if (options->inputs && options->time && !strncmp(options->time, "t=", 2))
+    return cli_usage_error(command_name(options),
+                           "--time %s: files on the command line have no times, only numbers, from 0", options->time);
+  if (options->input)
+    return result;
+  if (!options->refine)
+    return cli_usage_error(command_name(options), "no input given");
+  const uint64_t used = BIT(OPTION_OUTPUT) | BIT(OPTION_THREADS) | BIT(OPTION_QUIET) | BIT(OPTION_STRICT) | BIT(OPTION_REFINE) |
+                        BIT(OPTION_NO_PLOTS);
+  for (int id = 0; id < OPTION_COUNT; id++)
+    if (options->given & ~used & BIT(id))
+      return cli_usage_error("converge", "--%s needs an input: --refine has a scene of its own", render_table[id].name);
+  return -1;
+}
+
+int render_options_parse(RenderOptions *options, int argc, char **argv) {
+  int result = parse_words(options, argc, argv, true);
+  if (result < 0 && options->scene) {
+    options->source = 0;
+    if (!scene_file_read(options))
+      return CLI_FAILED;
+    if (options->command == COMMAND_CONVERGE && render_options_direct(options)) {
+      cli_error("%s: a scene of extinction or emission arrays is always exact: there is nothing to compare", options->scene);
+      return CLI_FAILED;
+    }
+    take_scene(options);
+  }
+  options->source = 0;
+  if (result < 0)
+    result = parse_words(options, argc, argv, false);
+  if (result < 0)
+    result = check_use(options);
+  char *fault = result < 0 ? find_fault(options) : NULL;
+  if (fault && options->scene) {
+    cli_error("%s", fault);
+    result = CLI_FAILED;
+  } else if (fault) {
+    result = cli_usage_error(command_name(options), "%s", fault);
+  }
+  free(fault);
+  return result;
+}
+
+/* ── completion ── */
+
+static const char *preset_word(int i) {
+  return tetcast_preset_name(i);
+}
+
+static const char *channel_word(int i) {
+  const TetcastChannelInfo *info = tetcast_channel_info(i);
+  return info ? info->name : NULL;
+}
+
+static const char *const *words_of(OptionId id) {
+  static const char *presets[COMPLETION_WORDS], *colors[COMPLETION_WORDS], *channels[COMPLETION_WORDS];
+  static const char *const integrators[] = {"exact", "midpoint:", "trapezoid:", "gauss:", "table:", NULL};
+  static const char *const ranges[] = {"step", "series", NULL}, *const times[] = {"all", NULL};
+  switch (id) {
+  case OPTION_PRESET:
+    return completion_words(preset_word, presets);
+  case OPTION_BACKGROUND:
+    return completion_words(color_name, colors);
+  case OPTION_INTEGRATOR:
+    return integrators;
+  case OPTION_CHANNELS:
+    return completion_words(channel_word, channels);
+  case OPTION_RANGE:
+    return ranges;
+  case OPTION_TIME:
+    return times;
+  default:
+    return render_table[id].names;
+  }
+}
+
+static int complete(RenderCommand command, CompletionOption list[COMPLETION_OPTIONS]) {
+  struct option words[OPTION_COUNT + 2];
+  OptionId ids[OPTION_COUNT];
+  list_words(command, words, ids);
+  const int count = completion_of_words(words, list);
+  for (int i = 0; i + 1 < count; i++) { /* but for the last, --help */
+    if (render_table[ids[i]].kind == KIND_PATH)
+      list[i].kind = COMPLETION_PATH;
+    list[i].words = words_of(ids[i]);
+  }
+  return count;
+}
+
+int completion_of_render(CompletionOption list[COMPLETION_OPTIONS]) {
+  return complete(COMMAND_RENDER, list);
+}
+
+int completion_of_converge(CompletionOption list[COMPLETION_OPTIONS]) {
+  return complete(COMMAND_CONVERGE, list);
+}
