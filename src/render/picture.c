@@ -214,7 +214,8 @@ static bool project_some(void *data, int64_t begin, int64_t end, int worker) {
  * worth it. Most rays cross some of the cells along one edge of a cube of as many. */
 static bool worth_projecting(const TetcastScene *scene, int64_t rays, const TcJob *job) {
   const double cells = (double)scene->volume->cell_count, crossings = 0.5 * (double)rays * cbrt(cells);
-  return !job->shell->visible && crossings > 3 * (double)scene->volume->vertex_count;
+  const double share = job->shell->visible ? (double)job->shell->visible_count / (double)scene->volume->clusters.count : 1;
+  return share * crossings > 3 * (double)scene->volume->vertex_count;
 }
 
 /* Projects vertices; `screen` is part of the job then. Where there is no memory for it, that is told: rays in space would

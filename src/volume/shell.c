@@ -103,7 +103,7 @@ TetcastStatus tc_shell_build(const TcRows *rows, const TcPieces *pieces, TcShell
     tc_release(context, visible);
     return TETCAST_OK;
   }
-  *shell = (TcShell){.context = context, .volume = volume, .visible = visible};
+  *shell = (TcShell){.context = context, .volume = volume, .visible = visible, .visible_count = count};
   Build build = {.volume = volume, .visible = visible};
   TetcastStatus status = make_faces(&build, shell);
   tc_release(context, build.begin);

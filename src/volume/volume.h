@@ -18,6 +18,7 @@ typedef struct TcShell {
   int64_t count;
   TcEmbree *embree;         /* over the faces or cells; NULL if there are none */
   uint8_t *visible;         /* of each cluster; NULL: all are */
+  int64_t visible_count;    /* how many clusters are, if not all */
   void *memory;             /* of `faces`, if they are its own */
 } TcShell;
 

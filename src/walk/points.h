@@ -67,6 +67,14 @@ TC_INLINE void tc_points_on_screen(const void *vertices, const TcRays *rays, con
 /* ── in ray space ── */
 
 #if !TC_SINGLE
+/* A point's components, those along kx, ky and kz, in the space of the rays. */
+TC_INLINE void tc_shear(const TcRays *rays, const TcVec component[3], TcLanePoints *p) {
+  const TcVec x = component[0] - rays->origin[0], y = component[1] - rays->origin[1], z = component[2] - rays->origin[2];
+  p->x = x - rays->shear_x * z - rays->rest_x;
+  p->y = y - rays->shear_y * z - rays->rest_y;
+  p->d = z * rays->inverse_z - rays->rest_z;
+}
+
 TC_NOINLINE void tc_points_in_ray_space(const TcGround *ground, const TcRays *rays, const uint32_t id[TC_LANES], TcLanePoints *p) {
   const TetcastVolume *volume = ground->shell->volume;
   const int kx = rays->kz == 2 ? 0 : rays->kz + 1, ky = rays->kz == 0 ? 2 : rays->kz - 1;
@@ -85,11 +93,17 @@ TC_NOINLINE void tc_points_in_ray_space(const TcGround *ground, const TcRays *ra
   if (ground->values && ground->values->association == TETCAST_POINT) {
     for (int l = 0; l < TC_LANES; ++l) TC_AT(s, l) = tc_rows_value(ground->values, id[l], 0);
   }
-  const TcVec x = component[0] - rays->origin[0], y = component[1] - rays->origin[1], z = component[2] - rays->origin[2];
-  p->x = x - rays->shear_x * z - rays->rest_x;
-  p->y = y - rays->shear_y * z - rays->rest_y;
-  p->d = z * rays->inverse_z - rays->rest_z;
+  tc_shear(rays, component, p);
   p->s = s;
+}
+
+/* One vertex for all rays, but for its scalar. */
+TC_INLINE void tc_point_in_ray_space(const TcGround *ground, const TcRays *rays, uint32_t id, TcLanePoints *p) {
+  const int kx = rays->kz == 2 ? 0 : rays->kz + 1, ky = rays->kz == 0 ? 2 : rays->kz - 1;
+  double position[3];
+  tc_volume_vertex(ground->shell->volume, id, position);
+  const TcVec component[3] = {tc_set(position[kx]), tc_set(position[ky]), tc_set(position[rays->kz])};
+  tc_shear(rays, component, p);
 }
 #endif
 
@@ -107,9 +121,8 @@ TC_INLINE void tc_points_load(const TcGround *ground, const TcRays *rays, const 
 TC_INLINE void tc_points_of_one(const TcGround *ground, const TcRays *rays, uint32_t id, TcLanePoints *p) {
 #if !TC_SINGLE
   if (TC_UNLIKELY(!ground->screen)) {
-    uint32_t same[TC_LANES];
-    tc_store_word(same, tc_set_word(id));
-    tc_points_in_ray_space(ground, rays, same, p);
+    tc_point_in_ray_space(ground, rays, id, p);
+    p->s = tc_set(ground->values && ground->values->association == TETCAST_POINT ? tc_rows_value(ground->values, id, 0) : 0);
     p->id = tc_set_word(id);
     return;
   }
@@ -134,7 +147,7 @@ TC_INLINE void tc_point_beside(const TcGround *ground, const TcRays *rays, uint3
 #if !TC_SINGLE
   if (TC_UNLIKELY(!ground->screen)) {
     TcLanePoints p;
-    tc_points_of_one(ground, rays, id, &p);
+    tc_point_in_ray_space(ground, rays, id, &p);
     *x = p.x;
     *y = p.y;
     return;
