@@ -80,9 +80,16 @@ static void report_head(Report *report) {
 static void report_add(Report *report, const Result *r) {
   must(report->count < MOST_RESULTS, "too many rows");
   report->results[report->count++] = *r;
-  fprintf(report->csv, "%s,%lld,\"%s\",%s,%s,%s,%.5g,%.5g,%.4f,%.4f,%.4f,%g,%.3g,%d\n", r->mesh, (long long)r->cells,
-          r->what, r->isa[0], r->isa[1], r->unit, r->amount[0], r->amount[1], r->ratio, r->low, r->high, r->reach,
-          r->difference, r->rounds);
+  fprintf(report->csv, "%s,%lld,\"%s\",%s,%s,%s,%.5g,%.5g,%.4f,%.4f,%.4f,", r->mesh, (long long)r->cells, r->what,
+          r->isa[0], r->isa[1], r->unit, r->amount[0], r->amount[1], r->ratio, r->low, r->high);
+  if (r->reach > 0) {
+    fprintf(report->csv, "%g", r->reach);
+  }
+  if (r->difference < 0) { /* NaN is written */
+    fprintf(report->csv, ",,%d\n", r->rounds);
+  } else {
+    fprintf(report->csv, ",%.3g,%d\n", r->difference, r->rounds);
+  }
   fflush(report->csv);
   fprintf(stderr, "%s%s%s%s%s: %.4g, against %.4g %s: %.3f [%.3f, %.3f]", r->mesh, r->mesh[0] ? ", " : "", r->what,
           r->isa[0][0] ? ", " : "", r->isa[0], r->amount[0], r->amount[1], r->unit, r->ratio, r->low, r->high);
