@@ -178,7 +178,8 @@ static void ask_for_bound(Arena *arena, const TetcastCamera *camera, int pixels,
 
 static void measure_vtk(Arena *arena, const TetcastCamera *camera, int pixels, Contender *contender, const Transfer *transfer,
                         float *picture) {
-  const TetcastTransferFunctionDesc desc = transfer_desc(transfer);
+  TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
+  transfer_fill(&desc, transfer);
   Clock start = clock_now();
   must(caster_transfer(arena->caster, &desc, contender->integrator), "VTK has no memory");
   times_add(&contender->transfer, clock_since(start));

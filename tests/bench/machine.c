@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "machine.h"
 
+#include <stdbool.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
 
-#include <tetcast/version.h>
-
-#include "caster.h"
 
 /* The value of the first line "KEY : VALUE" of /proc/cpuinfo. */
 static void read_cpu(const char *key, char *value, size_t size) {
@@ -64,8 +62,10 @@ static void describe_caches(FILE *file) {
 
 void machine_describe(FILE *file) {
   static const char *const flags[] = {"hypervisor", "sse4_2", "avx", "avx2", "fma", "avx512f", "avx512dq", "avx512vl", "asimd"};
-  char model[256], features[8192];
+  char model[256], family[64], number[64], features[8192];
   read_cpu("model name", model, sizeof model);
+  read_cpu("cpu family", family, sizeof family);
+  read_cpu("model\t", number, sizeof number);
   read_cpu("flags", features, sizeof features);
   if (!features[0]) {
     read_cpu("Features", features, sizeof features);
@@ -75,7 +75,7 @@ void machine_describe(FILE *file) {
   strftime(date, sizeof date, "%Y-%m-%d", gmtime(&now));
   fprintf(file, "# date: %s\n", date);
   if (model[0]) {
-    fprintf(file, "# processor: %s\n", model);
+    fprintf(file, family[0] ? "# processor: %s, family %s, model %s\n" : "# processor: %s\n", model, family, number);
   }
   fprintf(file, "# processors: %ld\n", sysconf(_SC_NPROCESSORS_ONLN));
   fprintf(file, "# memory: %.0f GiB\n", (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGE_SIZE) / 0x1p30);
@@ -85,8 +85,6 @@ void machine_describe(FILE *file) {
     fprintf(file, "%s%s", has_flag(features, flags[i]) ? " " : "", has_flag(features, flags[i]) ? flags[i] : "");
   }
   fprintf(file, "\n# compiler: %s\n", BENCH_COMPILER);
-  fprintf(file, "# tetcast %s, Embree %s, VTK %s\n", tetcast_version_string(), tetcast_embree_version_string(),
-          caster_vtk_version());
 }
 
 void machine_load(FILE *file, const char *when) {

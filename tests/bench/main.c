@@ -2,11 +2,11 @@
 /* Measures tetcast beside VTK's unstructured ray caster; see README.md. */
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "jobs.h"
 #include "machine.h"
+#include "program.h"
 
 static const char help[] =
   "usage: tetcast_bench [OPTION]…\n"
@@ -24,56 +24,20 @@ static void usage(const char *what) {
   exit(2);
 }
 
-/* DIR/NAME if that can be run, else NULL. */
-static const char *find_program(const char *folder, const char *name) {
-  const size_t size = strlen(folder) + strlen(name) + 2;
-  char *path = malloc(size);
-  must(path != NULL, "no memory");
-  snprintf(path, size, "%s/%s", folder, name);
-  if (access(path, X_OK) == 0) {
-    return path;
-  }
-  fprintf(stderr, "tetcast_bench: without %s, which was not built\n", path);
-  free(path);
-  return NULL;
-}
-
 static void path_of(char *path, size_t size, const Options *options, const char *name, const char *extension) {
   must((size_t)snprintf(path, size, "%s/%s%s", options->scratch, name, extension) < size, "a path is too long");
-}
-
-static bool run_child(pid_t child) {
-  int status = 0;
-  return child > 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
-
-/* TetGen needs much more memory than the mesh it makes, so that happens elsewhere, and once. */
-static bool make_body(const Options *options, const SceneDesc *scene) {
-  char path[4096], cells[32];
-  path_of(path, sizeof path, options, scene->name, ".mesh");
-  snprintf(cells, sizeof cells, "%lld", (long long)scene->cells);
-  pid_t child = fork();
-  if (child == 0) {
-    execl(options->body, options->body, scene->body, cells, path, (char *)NULL);
-    _exit(127);
-  }
-  return run_child(child);
 }
 
 /* Does one job in a process of its own. */
 static bool run_job(const Options *options, const SceneDesc *scene, void (*work)(const Job *)) {
   pid_t child = fork();
   if (child != 0) {
-    return run_child(child);
+    return program_wait(child);
   }
   BenchMesh mesh;
   char path[4096];
-  if (scene->n > 0) {
-    must(bench_mesh_cube(&mesh, scene->n, scene->type), "no memory for a mesh");
-  } else {
-    path_of(path, sizeof path, options, scene->name, ".mesh");
-    must(bench_mesh_load(&mesh, path), "a mesh can't be read");
-  }
+  path_of(path, sizeof path, options, scene->name, ".mesh");
+  must(scene_load(&mesh, scene, path), "a mesh can't be read, or there is no memory for it");
   snprintf(path, sizeof path, "%s/results.csv", options->folder);
   FILE *file = fopen(path, "a");
   must(file != NULL, "results.csv can't be written");
@@ -101,7 +65,9 @@ static bool run_scene(const Options *options, const SceneDesc *scene) {
     fprintf(stderr, "%s: skipped, needs TetGen\n", scene->name);
     return true;
   }
-  bool ok = scene->n > 0 || make_body(options, scene);
+  char path[4096];
+  path_of(path, sizeof path, options, scene->name, ".mesh");
+  bool ok = scene->n > 0 || scene_make_body(scene, options->body, path);
   for (size_t i = 0; i < sizeof jobs / sizeof *jobs && ok; i++) {
     if ((scene->work & jobs[i].needs) == jobs[i].needs) {
       fprintf(stderr, "%s: %s\n", scene->name, jobs[i].name);
@@ -111,8 +77,6 @@ static bool run_scene(const Options *options, const SceneDesc *scene) {
   if (!ok) {
     fprintf(stderr, "tetcast_bench: %s failed\n", scene->name);
   }
-  char path[4096];
-  path_of(path, sizeof path, options, scene->name, ".mesh");
   remove(path);
   return ok;
 }
@@ -124,6 +88,8 @@ static void write_head(const Options *options, bool end) {
   must(file != NULL, "results.csv can't be written");
   if (!end) {
     machine_describe(file);
+    fprintf(file, "# tetcast %s, Embree %s, VTK %s\n", tetcast_version_string(), tetcast_embree_version_string(),
+            caster_vtk_version());
   }
   machine_load(file, end ? "at the end" : "at the beginning");
   if (!end) {
@@ -135,7 +101,6 @@ static void write_head(const Options *options, bool end) {
 int main(int argc, char **argv) {
   Options options = {.run = RUN_NORMAL, .pixels = 512, .least = 0.3, .folder = "."};
   const char *only = NULL, *bin = NULL;
-  char beside[4096];
   for (int i = 1; i < argc; i++) {
     const bool more = i + 1 < argc;
     if (strcmp(argv[i], "--small") == 0) {
@@ -161,15 +126,12 @@ int main(int argc, char **argv) {
       usage(argv[i]);
     }
   }
-  if (!bin) {
-    const char *slash = strrchr(argv[0], '/');
-    snprintf(beside, sizeof beside, "%.*s", slash ? (int)(slash - argv[0]) : 1, slash ? argv[0] : ".");
-    bin = beside;
-  }
+  char *beside = program_folder(argv[0]);
+  bin = bin ? bin : beside;
   options.scratch = options.folder;
-  options.tetcast = find_program(bin, "tetcast");
-  options.plain = find_program(bin, "tetcast_bench_plain");
-  options.body = find_program(bin, "tetcast_bench_body");
+  options.tetcast = program_find(bin, "tetcast");
+  options.plain = program_find(bin, "tetcast_bench_plain");
+  options.body = program_find(bin, "tetcast_bench_body");
   write_head(&options, false);
   bool ok = true, any = false;
   for (int i = 0; scene_get(i); i++) {
@@ -184,6 +146,7 @@ int main(int argc, char **argv) {
   free((char *)options.tetcast);
   free((char *)options.plain);
   free((char *)options.body);
+  free(beside);
   if (!any) {
     usage("there is no such scene");
   }

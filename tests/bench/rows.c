@@ -43,7 +43,7 @@ static int compare(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-double sample_median(const Sample *sample) {
+double sample_quantile(const Sample *sample, double fraction) {
   if (sample->count == 0) {
     return NAN;
   }
@@ -51,8 +51,12 @@ double sample_median(const Sample *sample) {
   const size_t n = (size_t)sample->count;
   memcpy(sorted, sample->values, n * sizeof *sorted);
   qsort(sorted, n, sizeof *sorted, compare);
-  return (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
+  const double at = fraction * (double)(n - 1);
+  const size_t below = (size_t)at, above = below + 1 < n ? below + 1 : below;
+  return sorted[below] + (at - (double)below) * (sorted[above] - sorted[below]);
 }
+
+double sample_median(const Sample *sample) { return sample_quantile(sample, 0.5); }
 
 void times_add(Times *times, Clock time) {
   sample_add(&times->wall, time.wall);

@@ -29,7 +29,8 @@ typedef struct Sample {
 } Sample;
 
 void sample_add(Sample *sample, double value); /* beyond SAMPLES: dropped */
-double sample_median(const Sample *sample);    /* NaN without values */
+double sample_quantile(const Sample *sample, double fraction); /* between values in proportion; NaN without values */
+double sample_median(const Sample *sample);
 
 /* The same thing timed several times. */
 typedef struct Times {

@@ -3,7 +3,11 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
+
+#include "program.h"
 
 #define F32 TETCAST_TYPE_FLOAT32
 #define F64 TETCAST_TYPE_FLOAT64
@@ -30,6 +34,21 @@ static const SceneDesc scenes[] = {
 
 const SceneDesc *scene_get(int i) { return i < (int)(sizeof scenes / sizeof *scenes) ? &scenes[i] : NULL; }
 
+bool scene_make_body(const SceneDesc *scene, const char *program, const char *path) {
+  char cells[32];
+  snprintf(cells, sizeof cells, "%lld", (long long)scene->cells);
+  pid_t child = fork();
+  if (child == 0) {
+    execl(program, program, scene->body, cells, path, (char *)NULL);
+    _exit(127);
+  }
+  return program_wait(child);
+}
+
+bool scene_load(BenchMesh *mesh, const SceneDesc *scene, const char *path) {
+  return scene->n > 0 ? bench_mesh_cube(mesh, scene->n, scene->type) : bench_mesh_load(mesh, path);
+}
+
 TetcastCamera scene_camera(TetcastProjection projection) {
   const double direction[3] = {0.53, -0.41, 0.74};
   TetcastCamera camera = {.target = {0.5, 0.5, 0.5}, .up = {0, 1, 0}, .projection = projection, .fovy = 30, .height = 1.8};
@@ -50,6 +69,8 @@ const Transfer transfer_softer = {
 const Transfer transfer_sharp = {
   "sharp", 5, 6, VIRIDIS, {{0.34, 0}, {0.35, 1}, {0.36, 0}, {0.67, 0}, {0.68, 1}, {0.69, 0}}, 5e-4};
 const Transfer transfer_linear = {"one piece", 1, 2, {{0, 0.9, 0.8, 0.7}}, {{-1, 0}, {2, 1}}, 0.25};
+const Transfer transfer_blend = {
+  "one piece, two colours", 2, 2, {{-1, 0.9, 0.2, 0.1}, {2, 0.1, 0.6, 0.9}}, {{-1, 0}, {2, 1}}, 0.25};
 
 Transfer transfer_above(double threshold) {
   Transfer transfer = transfer_soft;
@@ -84,13 +105,11 @@ double scene_threshold(const BenchMesh *mesh, double fraction) {
   return threshold;
 }
 
-TetcastTransferFunctionDesc transfer_desc(const Transfer *transfer) {
-  TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
-  desc.color = transfer->color[0];
-  desc.color_count = transfer->color_count;
-  desc.opacity = transfer->opacity[0];
-  desc.opacity_count = transfer->opacity_count;
-  desc.unit_distance = transfer->unit_distance;
-  desc.opacity_model = TETCAST_OPACITY_VTK_UNSTRUCTURED;
-  return desc;
+void transfer_fill(TetcastTransferFunctionDesc *desc, const Transfer *transfer) {
+  desc->color = transfer->color[0];
+  desc->color_count = transfer->color_count;
+  desc->opacity = transfer->opacity[0];
+  desc->opacity_count = transfer->opacity_count;
+  desc->unit_distance = transfer->unit_distance;
+  desc->opacity_model = TETCAST_OPACITY_VTK_UNSTRUCTURED;
 }

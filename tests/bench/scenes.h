@@ -3,6 +3,7 @@
 #ifndef BENCH_SCENES_H
 #define BENCH_SCENES_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include <tetcast/array.h>
@@ -41,6 +42,13 @@ typedef struct SceneDesc {
 /* Scene i = 0, 1, …, NULL beyond the last. */
 const SceneDesc *scene_get(int i);
 
+/* Has tetcast_bench_body, which is `program`, write the body's mesh to a file: TetGen needs much more memory than the mesh that it makes,
+ * so that happens in another process. */
+bool scene_make_body(const SceneDesc *scene, const char *program, const char *path);
+
+/* The scene's mesh, a body's from the file that was written. */
+bool scene_load(BenchMesh *mesh, const SceneDesc *scene, const char *path);
+
 /* A slanted view of the unit cube, which fills much of a square picture. Orthographic: in perspective VTK takes a segment's length
  * along a slightly different ray. */
 TetcastCamera scene_camera(TetcastProjection projection);
@@ -59,6 +67,7 @@ extern const Transfer transfer_soft;   /* everything visible, half-transparent *
 extern const Transfer transfer_softer; /* the same, thinner */
 extern const Transfer transfer_sharp;  /* two thin opaque peaks, nothing between */
 extern const Transfer transfer_linear; /* one piece, one colour */
+extern const Transfer transfer_blend;  /* one piece, along which the colour changes */
 
 /* A transfer function that shows the cells with a value above `threshold`, and one that shows all with the same knots. */
 Transfer transfer_above(double threshold);
@@ -66,8 +75,8 @@ Transfer transfer_above(double threshold);
 /* A value that just the `fraction` of the cells with the highest corners reach above. NaN without memory. */
 double scene_threshold(const BenchMesh *mesh, double fraction);
 
-/* Refers to `transfer`. */
-TetcastTransferFunctionDesc transfer_desc(const Transfer *transfer);
+/* Describes `transfer`, which is referred to, in a description that has its defaults. */
+void transfer_fill(TetcastTransferFunctionDesc *desc, const Transfer *transfer);
 
 #ifdef __cplusplus
 }

@@ -52,7 +52,8 @@ Clock tet_prepare(Tet *tet) {
 }
 
 Clock tet_transfer(Tet *tet, const Transfer *transfer) {
-  TetcastTransferFunctionDesc desc = transfer_desc(transfer);
+  TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
+  transfer_fill(&desc, transfer);
   TetcastTransferFunction *function = NULL;
   Clock start = clock_now();
   must_be_ok(tetcast_transfer_function_create(tet->context, &desc, &function), "transfer function");
