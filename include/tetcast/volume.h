@@ -46,7 +46,8 @@ TETCAST_API TetcastVolumeDesc tetcast_volume_desc_default(void);
  * A mesh without cells is TETCAST_ERROR_DATA.
  *
  * Cells need not share vertices to be neighbours: vertices of different cells are one place if they lie within four
- * units in the last place of the mesh's largest coordinate, in the precision that the mesh has. So files in which each
+ * units in the last place of the mesh's largest coordinate along each axis, in the precision that the mesh has, unless
+ * a cell has two of them. So files in which each
  * cell brings its own points have no gaps. Values stay each vertex's own: a point field may jump between such cells.
  * This costs memory, 16 bytes for each tetrahedron, and time only where there are such vertices. */
 TETCAST_API TetcastStatus tetcast_volume_create(TetcastContext *context, const TetcastMesh *mesh, const TetcastVolumeDesc *desc,

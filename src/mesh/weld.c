@@ -7,7 +7,7 @@
 /* Places in a grid whose cells are four times as wide as the tolerance, by a hash. A vertex that lies alone is in the list of its grid cell. */
 typedef struct Grid {
   const TetcastMesh *mesh;
-  double tolerance;
+  double tolerance[3];
   uint64_t mask;
   uint32_t *first; /* [mask + 1]: a vertex's number in the list of candidates, plus one; 0: none */
   uint32_t *next;  /* [count] */
@@ -15,14 +15,18 @@ typedef struct Grid {
 
 enum { NONE = 0 };
 
-double tc_weld_tolerance(const TetcastMesh *mesh) {
-  double largest = 0;
-  for (int k = 0; k < 6; ++k) largest = fmax(largest, fabs(mesh->bounds[k]));
+void tc_weld_tolerance(const TetcastMesh *mesh, double tolerance[3]) {
   const double unit = mesh->vertices.type == TETCAST_TYPE_FLOAT64 ? DBL_EPSILON : (double)FLT_EPSILON;
-  int exponent;
-  frexp(largest, &exponent); /* below 2^exponent, where units are half of the epsilon times that */
-  return largest > 0 ? ldexp(4 * 0.5 * unit, exponent) : 0;
+  for (int k = 0; k < 3; ++k) {
+    const double largest = fmax(fabs(mesh->bounds[2 * k]), fabs(mesh->bounds[2 * k + 1]));
+    int exponent;
+    frexp(largest, &exponent); /* below 2^exponent, where units are half of the epsilon times that */
+    tolerance[k] = largest > 0 ? ldexp(4 * 0.5 * unit, exponent) : 0;
+  }
 }
+
+/* The grid's cell at this place along one axis; where all coordinates are 0, there is one. */
+static double place_of(double x, double tolerance) { return tolerance > 0 ? floor(x / (4 * tolerance)) : 0; }
 
 static uint64_t hash_of(const Grid *grid, const double at[3]) {
   uint64_t hash = 0;
@@ -36,16 +40,16 @@ static uint64_t hash_of(const Grid *grid, const double at[3]) {
 static bool is_near(const Grid *grid, uint32_t vertex, const double p[3]) {
   double q[3];
   tc_mesh_vertex(grid->mesh, vertex, q);
-  return fabs(p[0] - q[0]) <= grid->tolerance && fabs(p[1] - q[1]) <= grid->tolerance && fabs(p[2] - q[2]) <= grid->tolerance;
+  const double *tolerance = grid->tolerance;
+  return fabs(p[0] - q[0]) <= tolerance[0] && fabs(p[1] - q[1]) <= tolerance[1] && fabs(p[2] - q[2]) <= tolerance[2];
 }
 
 /* The one of the vertices in the grid that lies within the tolerance of p, as its number plus one; the latest, if there are several. */
 static uint32_t find(const Grid *grid, const uint32_t *vertices, const double p[3]) {
-  const double width = 4 * grid->tolerance;
   double low[3], high[3], at[3];
   for (int k = 0; k < 3; ++k) {
-    low[k] = floor((p[k] - grid->tolerance) / width);
-    high[k] = floor((p[k] + grid->tolerance) / width);
+    low[k] = place_of(p[k] - grid->tolerance[k], grid->tolerance[k]);
+    high[k] = place_of(p[k] + grid->tolerance[k], grid->tolerance[k]);
   }
   for (int corner = 0; corner < 8; ++corner) {
     bool seen = false; /* with another corner */
@@ -62,7 +66,7 @@ static uint32_t find(const Grid *grid, const uint32_t *vertices, const double p[
 
 static void add(Grid *grid, uint32_t number, const double p[3]) {
   double at[3];
-  for (int k = 0; k < 3; ++k) at[k] = floor(p[k] / (4 * grid->tolerance));
+  for (int k = 0; k < 3; ++k) at[k] = place_of(p[k], grid->tolerance[k]);
   uint32_t *first = &grid->first[hash_of(grid, at)];
   grid->next[number - 1] = *first;
   *first = number;
@@ -81,9 +85,9 @@ static int64_t find_all(Grid *grid, const uint32_t *vertices, int64_t count, uin
   return found;
 }
 
-/* Takes back what would let a cell have a vertex twice. `place`: for each of the mesh's vertices its number among the candidates plus one. */
-static int64_t keep_thin_cells(const TetcastMesh *mesh, const uint32_t *place, uint32_t *with) {
-  int64_t taken_back = 0;
+/* Marks those with which vertices of one cell would become one, though the cell has two of them. `place`: for each of the mesh's vertices its number among
+ * the candidates plus one. */
+static void find_thin_cells(const TetcastMesh *mesh, const uint32_t *place, const uint32_t *with, uint32_t *thin) {
   for (int64_t i = 0; i < mesh->tetrahedra.count; ++i) {
     uint32_t v[4], own[4], is[4];
     tc_mesh_cell(mesh, i, v);
@@ -93,15 +97,10 @@ static int64_t keep_thin_cells(const TetcastMesh *mesh, const uint32_t *place, u
     }
     for (int k = 1; k < 4; ++k) {
       for (int j = 0; j < k; ++j) {
-        if (is[j] == NONE || is[j] != is[k] || own[j] == own[k]) continue;
-        const int late = with[own[j] - 1] != NONE ? j : k; /* one of them at least was welded */
-        with[own[late] - 1] = NONE;
-        is[late] = own[late];
-        ++taken_back;
+        if (is[j] != NONE && is[j] == is[k] && own[j] != own[k]) thin[is[j] - 1] = 1;
       }
     }
   }
-  return taken_back;
 }
 
 static TetcastStatus weld(Grid *grid, const uint32_t *vertices, int64_t count, uint32_t *with, TcWeld **welds, int64_t *weld_count) {
@@ -112,8 +111,15 @@ static TetcastStatus weld(Grid *grid, const uint32_t *vertices, int64_t count, u
   if (!tc_allocate_array(mesh->context, (void **)&place, mesh->vertices.count, sizeof *place, "vertices at one place")) return TETCAST_ERROR_MEMORY;
   memset(place, 0, (size_t)mesh->vertices.count * sizeof *place);
   for (int64_t i = 0; i < count; ++i) place[vertices[i]] = (uint32_t)i + 1;
-  found -= keep_thin_cells(mesh, place, with);
+  uint32_t *const thin = grid->next; /* which has done its work */
+  memset(thin, 0, (size_t)count * sizeof *thin);
+  find_thin_cells(mesh, place, with, thin);
   tc_release(mesh->context, place);
+  for (int64_t i = 0; i < count; ++i) {
+    if (with[i] == NONE || !thin[with[i] - 1]) continue;
+    with[i] = NONE;
+    --found;
+  }
   if (found == 0) return TETCAST_OK;
   if (!tc_allocate_array(mesh->context, (void **)welds, found, sizeof **welds, "vertices at one place")) return TETCAST_ERROR_MEMORY;
   for (int64_t i = 0; i < count; ++i) {
@@ -124,10 +130,10 @@ static TetcastStatus weld(Grid *grid, const uint32_t *vertices, int64_t count, u
 
 TetcastStatus tc_weld(const TetcastMesh *mesh, const uint32_t *vertices, int64_t count, TcWeld **welds, int64_t *weld_count) {
   TetcastContext *context = mesh->context;
-  Grid grid = {.mesh = mesh, .tolerance = tc_weld_tolerance(mesh), .mask = 1};
+  Grid grid = {.mesh = mesh, .mask = 1};
+  tc_weld_tolerance(mesh, grid.tolerance);
   *welds = NULL;
   *weld_count = 0;
-  if (!(grid.tolerance > 0)) return TETCAST_OK;
   while (grid.mask < 2 * (uint64_t)count) grid.mask *= 2;
   uint32_t *with = NULL;
   TetcastStatus status = TETCAST_ERROR_MEMORY;

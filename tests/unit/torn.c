@@ -183,7 +183,46 @@ static void thin_cells_stay(void **state) {
   fixture_end(&fixture);
 }
 
+/* Cells of any vertices, some of them twice, many vertices at few places: whatever is welded, all that has an inside is there. */
+static void any_cells(void **state) {
+  (void)state;
+  uint64_t seed = 5;
+  Fixture fixture;
+  assert_int_equal(fixture_begin(&fixture, 1, 0), TETCAST_OK);
+  for (int round = 0; round < 400; ++round) {
+    enum { VERTICES = 24, SOME = 40 };
+    double vertices[VERTICES][3];
+    int64_t cells[SOME][4];
+    for (int i = 0; i < VERTICES; ++i) {
+      for (int k = 0; k < 3; ++k) vertices[i][k] = floor(3 * uniform(&seed)) / 2;
+    }
+    for (int i = 0; i < SOME; ++i) {
+      for (int k = 0; k < 4; ++k) cells[i][k] = i ? (int64_t)(uniform(&seed) * VERTICES) : k;
+    }
+    TetcastMeshDesc desc = tetcast_mesh_desc_default();
+    desc.vertices = (TetcastArray){vertices, TETCAST_TYPE_FLOAT64, VERTICES, 0};
+    desc.tetrahedra = (TetcastArray){cells, TETCAST_TYPE_INT64, SOME, 0};
+    TetcastMesh *mesh = NULL;
+    assert_int_equal(tetcast_mesh_create(fixture.context, &desc, &mesh), TETCAST_OK);
+    TetcastVolume *volume = volume_of(fixture.context, mesh, TETCAST_TRAVERSAL_SHELL);
+    TetcastVolumeInfo info;
+    tetcast_volume_info(volume, &info);
+    int whole = 0; /* cells of four vertices, of which duplicates may be left out */
+    for (int i = 0; i < SOME; ++i) {
+      bool twice = false;
+      for (int k = 1; k < 4; ++k) {
+        for (int j = 0; j < k; ++j) twice = twice || cells[i][j] == cells[i][k];
+      }
+      whole += !twice;
+    }
+    assert_true(info.tetrahedra <= whole && info.tetrahedra >= 1 && info.welded < VERTICES);
+    tetcast_volume_destroy(&volume);
+    tetcast_mesh_destroy(&mesh);
+  }
+  fixture_end(&fixture);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(cells_meet), cmocka_unit_test(values_jump), cmocka_unit_test(thin_cells_stay)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(cells_meet), cmocka_unit_test(values_jump), cmocka_unit_test(thin_cells_stay), cmocka_unit_test(any_cells)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
