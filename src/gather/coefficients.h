@@ -85,33 +85,53 @@ TC_INLINE TcVec tc_groups_load(const TcRows *rows, int64_t first) {
 #endif
 }
 
-/* Those of the points, where the rays of `mask` are. */
-TC_INLINE void tc_groups_at(const unsigned on, const TcCoefficients *c, const TcGroups *groups, TcMask mask, const TcPacket *walk, double *values) {
-  const TcRows *rows = c->points;
-  for (unsigned lanes = rows ? tc_bits(mask) : 0; lanes; lanes &= lanes - 1) {
+/* One value of each lane: that of this column in the lanes' rows. */
+TC_INLINE TcVec tc_groups_gather(const TcRows *rows, const int64_t row[TC_LANES], int column) {
+  TcVec v;
+  if (rows->is_double) {
+    TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) TC_AT(v, l) = ((const double *)rows->data)[row[l] + column];
+  } else {
+    TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) TC_AT(v, l) = (double)((const float *)rows->data)[row[l] + column];
+  }
+  return v;
+}
+
+/* Those of the points, where the rays of `mask` are: a group in each lane. */
+TC_INLINE void tc_groups_at_rays(const unsigned on, const TcRows *rows, const TcGroups *groups, TcMask mask, const TcPacket *walk, double *values) {
+  for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
     const int l = __builtin_ctz(lanes);
-    double b[3];
+    TcVec weight[3];
     int64_t row[3];
     for (int k = 0; k < 3; ++k) {
-      b[k] = TC_AT(walk->at.barycentric[k], l);
+      weight[k] = tc_set(TC_AT(walk->at.barycentric[k], l));
       row[k] = (int64_t)TC_AT(walk->v[k].id, l) * rows->width;
     }
-    if (groups->by_rays) {
-      const TcVec weight[3] = {tc_set(b[0]), tc_set(b[1]), tc_set(b[2])};
-      for (int i = 0; i < rows->width; i += TC_LANES) {
-        const TcVec v[3] = {tc_groups_load(rows, row[0] + i), tc_groups_load(rows, row[1] + i), tc_groups_load(rows, row[2] + i)};
-        tc_store(values + l * groups->columns + i, tc_weighted(weight, v[0], v[1], v[2]));
-        if (on & TC_BOUND) tc_store(groups->range + l * groups->columns + i, tc_most3(v[0], v[1], v[2]) - tc_least3(v[0], v[1], v[2]));
-      }
-      continue;
-    }
-    for (int i = 0; i < rows->width; ++i) {
-      const double v[3] = {tc_rows_number(rows, row[0] + i), tc_rows_number(rows, row[1] + i), tc_rows_number(rows, row[2] + i)};
-      const double low = fmin(fmin(v[0], v[1]), v[2]), high = fmax(fmax(v[0], v[1]), v[2]), value = b[0] * v[0] + b[1] * v[1] + b[2] * v[2];
-      values[i * TC_LANES + l] = value < low ? low : value > high ? high : value;
-      if (on & TC_BOUND) groups->range[i * TC_LANES + l] = high - low;
+    for (int i = 0; i < rows->width; i += TC_LANES) {
+      const TcVec v[3] = {tc_groups_load(rows, row[0] + i), tc_groups_load(rows, row[1] + i), tc_groups_load(rows, row[2] + i)};
+      tc_store(values + l * groups->columns + i, tc_weighted(weight, v[0], v[1], v[2]));
+      if (on & TC_BOUND) tc_store(groups->range + l * groups->columns + i, tc_most3(v[0], v[1], v[2]) - tc_least3(v[0], v[1], v[2]));
     }
   }
+}
+
+/* The same with a ray in each lane. Lanes that rest have vertices, too; their values count for nothing. */
+TC_INLINE void tc_groups_at_lanes(const unsigned on, const TcRows *rows, const TcGroups *groups, TcMask mask, const TcPacket *walk, double *values) {
+  int64_t row[3][TC_LANES];
+  for (int k = 0; k < 3; ++k) {
+    TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) row[k][l] = (int64_t)TC_AT(walk->v[k].id, l) * rows->width;
+  }
+  for (int i = 0; i < rows->width; ++i) {
+    const TcVec v[3] = {tc_groups_gather(rows, row[0], i), tc_groups_gather(rows, row[1], i), tc_groups_gather(rows, row[2], i)};
+    double *const at = values + i * TC_LANES, *const range = groups->range + i * TC_LANES;
+    tc_store(at, tc_select(mask, tc_weighted(walk->at.barycentric, v[0], v[1], v[2]), tc_load(at)));
+    if (on & TC_BOUND) tc_store(range, tc_select(mask, tc_most3(v[0], v[1], v[2]) - tc_least3(v[0], v[1], v[2]), tc_load(range)));
+  }
+}
+
+TC_INLINE void tc_groups_at(const unsigned on, const TcCoefficients *c, const TcGroups *groups, TcMask mask, const TcPacket *walk, double *values) {
+  if (!c->points) return;
+  if (groups->by_rays) tc_groups_at_rays(on, c->points, groups, mask, walk, values);
+  else tc_groups_at_lanes(on, c->points, groups, mask, walk, values);
 }
 
 TC_NOINLINE void tc_groups_enter(const TcGatherJob *job, TcGroups *groups, TcMask mask, const TcPacket *walk) {
