@@ -88,8 +88,8 @@ TETCAST_API int tetcast_frame_groups(const TetcastFrame *frame);
 TETCAST_API const void *tetcast_frame_channel(const TetcastFrame *frame, TetcastChannel channel);
 
 /* Colours the pixels of a picture in a blend mode anew, without rendering: by the transfer function's colours at the values of the channel
- * TETCAST_CHANNEL_VALUE, which the frame must have (TETCAST_ERROR_ARGUMENT), times the pixels' alpha, which stay as they are. What
- * tetcast_scene_render() would give with that transfer function, up to rounding of values to the frame's type. */
+ * TETCAST_CHANNEL_VALUE, which the frame must have (TETCAST_ERROR_ARGUMENT), times the pixels' alpha, which stay as they are. It is, to the
+ * bit, what tetcast_scene_render() gives with that transfer function. */
 TETCAST_API TetcastStatus tetcast_frame_recolor(TetcastFrame *frame, const TetcastTransferFunction *transfer_function);
 
 #ifdef __cplusplus

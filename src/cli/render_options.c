@@ -27,10 +27,13 @@ typedef enum OptionKind { KIND_TEXT, KIND_PATH, KIND_NUMBERS, KIND_INTEGERS, KIN
 
 /* A picture is made by a transfer function or from coefficients. */
 #define DIRECT   (BIT(OPTION_EXTINCTION) | BIT(OPTION_EMISSION) | BIT(OPTION_GROUPS))
-#define TRANSFER (BIT(OPTION_ARRAY) | BIT(OPTION_TRANSFER) | BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | BIT(OPTION_OPACITY_MODEL))
+#define TRANSFER                                                                                                        \
+  (BIT(OPTION_ARRAY) | BIT(OPTION_TRANSFER) | BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | BIT(OPTION_OPACITY_MODEL) | \
+   BIT(OPTION_BLEND))
 
 /* Order of the library's enumerations. */
 static const char *const opacity_models[] = {"unit-distance", "vtk-unstructured", "ospray", NULL};
+static const char *const blends[] = {"composite", "maximum", "minimum", "average", "additive", NULL};
 static const char *const isas[] = {"auto", "scalar", "avx2", "avx512", NULL};
 static const char *const traversals[] = {"shell", "faces", NULL};
 static const char *const pixel_types[] = {"", "uint8", "uint16", "half", "float", "double", NULL};
@@ -75,6 +78,8 @@ static const struct {
                          .form = "expected NAME, NAME:component or NAME:mag"},
     [OPTION_GROUPS] = {"groups", KIND_FLAG, AT(groups), .excludes = TRANSFER, .only = COMMAND_RENDER,
                        .form = "expected true or false"},
+    [OPTION_BLEND] = {"blend", KIND_CHOICE, AT(blend), .names = blends, .excludes = DIRECT,
+                      .form = "expected composite, maximum, minimum, average or additive"},
     [OPTION_EYE] = {"eye", KIND_NUMBERS, AT(eye), 3, 3, -DBL_MAX, DBL_MAX, .form = "expected three numbers x,y,z"},
     [OPTION_TARGET] = {"target", KIND_NUMBERS, AT(target), 3, 3, -DBL_MAX, DBL_MAX,
                        .form = "expected three numbers x,y,z"},
@@ -97,7 +102,7 @@ static const struct {
     [OPTION_TOLERANCE] = {"tolerance", KIND_NUMBERS, AT(tolerance), 1, 1, 0, DBL_MAX, .only = COMMAND_RENDER,
                           .form = "expected a number, 0 or above"},
     [OPTION_CHANNELS] = {"channels", KIND_TEXT, AT(channels), .only = COMMAND_RENDER,
-                         .form = "expected error, or of radiance, optical_depth, transmittance and path_length some"},
+                         .form = "expected error, or value, or of radiance, optical_depth, transmittance and path_length some"},
     [OPTION_TRAVERSAL] = {"traversal", KIND_CHOICE, AT(traversal), .names = traversals,
                           .form = "expected shell or faces"},
     [OPTION_ISA] = {"isa", KIND_CHOICE, AT(isa), .names = isas,
@@ -249,7 +254,8 @@ static const struct {
                      {"radiance", TETCAST_CHANNEL_RADIANCE},
                      {"optical_depth", TETCAST_CHANNEL_OPTICAL_DEPTH},
                      {"transmittance", TETCAST_CHANNEL_TRANSMITTANCE},
-                     {"path_length", TETCAST_CHANNEL_PATH_LENGTH}};
+                     {"path_length", TETCAST_CHANNEL_PATH_LENGTH},
+                     {"value", TETCAST_CHANNEL_VALUE}};
 
 static uint32_t channel_bit(const char *name, size_t length) {
   for (size_t i = 0; i < sizeof channel_names / sizeof *channel_names; i++)
@@ -306,10 +312,19 @@ static const char *find_mixture(const RenderOptions *options) {
   if (!render_options_direct(options)) {
     if (groups_given(options))
       return "--groups: needs --extinction or --emission";
+    if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE) {
+      if (options->integrator && strcmp(options->integrator, "exact"))
+        return "--integrator: with another --blend than composite there is only exact";
+      return channels & ~(uint32_t)TETCAST_CHANNEL_VALUE ? "--channels: only value is possible with another --blend than composite" : NULL;
+    }
+    if (channels & TETCAST_CHANNEL_VALUE)
+      return "--channels value: needs --blend maximum, minimum, average or additive";
     return channels & ~(uint32_t)TETCAST_CHANNEL_ERROR ? "--channels: only error is possible without --extinction or --emission" : NULL;
   }
   if (options->integrator && strcmp(options->integrator, "exact"))
     return "--integrator: with --extinction or --emission there is only exact";
+  if (channels & TETCAST_CHANNEL_VALUE)
+    return "--channels value: not possible with --extinction or --emission";
   if (channels & TETCAST_CHANNEL_ERROR)
     return "--channels error: not possible with --extinction or --emission";
   if (channels & TETCAST_CHANNEL_RADIANCE && !render_options_given(options, OPTION_EMISSION))
@@ -571,6 +586,9 @@ static int check_use(const RenderOptions *options) {
     return cli_usage_error("converge", "--time all: expected a single step");
   if (options->command == COMMAND_CONVERGE && render_options_range(options) == RANGE_SERIES)
     return cli_usage_error("converge", "--range series: expected two numbers, LO not above HI, or step");
+  if (options->command == COMMAND_CONVERGE && render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
+    return cli_usage_error("converge", "--blend %s: values along rays are always exact, there is nothing to compare; a report is about composite",
+                           render_option_choice(OPTION_BLEND, options->blend));
   char *mistaken = options->input ? scene_file_mistaken(options->input) : NULL;
   const int result = mistaken ? cli_usage_error(command_name(options), "%s", mistaken) : -1;
   free(mistaken);
@@ -626,7 +644,7 @@ static const char *preset_word(int i) {
 static const char *const *words_of(OptionId id) {
   static const char *presets[COMPLETION_WORDS], *colors[COMPLETION_WORDS];
   static const char *const integrators[] = {"exact", "midpoint:", "trapezoid:", "gauss:", "table:", NULL};
-  static const char *const channels[] = {"error", "radiance", "optical_depth", "transmittance", "path_length", NULL};
+  static const char *const channels[] = {"error", "radiance", "optical_depth", "transmittance", "path_length", "value", NULL};
   static const char *const ranges[] = {"step", "series", NULL}, *const times[] = {"all", NULL};
   switch (id) {
   case OPTION_PRESET:

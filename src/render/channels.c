@@ -42,7 +42,8 @@ void tc_color_value(const TcPieces *colors, double value, double alpha, double r
 double tc_gathered_pixel(const TcGathered *g, double rgba[4]) {
   const TcCoefficients *c = g->coefficients;
   if (g->colors) {
-    tc_color_value(g->colors, value_of(g, 0), g->sums[1], rgba);
+    const double value = value_of(g, 0), alpha = g->sums[1];
+    tc_color_value(g->colors, g->single ? (double)(float)value : value, g->single ? (double)(float)alpha : alpha, rgba);
     return NAN;
   }
   if (!c) {

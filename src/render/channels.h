@@ -16,6 +16,7 @@ typedef struct TcGathered {
   const TcCoefficients *coefficients; /* NULL: a transfer function */
   const TcPieces *colors;             /* of values, in a blend mode; NULL: none */
   int value_exponent;                 /* of their unit */
+  bool single;                        /* colours are those of values as single precision holds them */
   int exponent;                       /* of the volume's unit of length */
   bool bounded;                       /* the last sum is a bound on the error of red, green, blue, alpha */
   double error;                       /* bound on that of red, green, blue, alpha */

@@ -78,6 +78,7 @@ void tc_frame_recolor(TetcastFrame *frame, const TcPieces *colors) {
 double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, TcGathered *gathered) {
   char *row = (char *)frame->pixels + y * frame->row_stride;
   double rgba[4];
+  gathered->single = frame->type == TETCAST_TYPE_FLOAT32; /* so that colouring anew gives the same */
   gathered->error = tc_gathered_pixel(gathered, rgba);
   if (frame->type == TETCAST_TYPE_FLOAT64) {
     memcpy(row + x * 4 * (int64_t)sizeof(double), rgba, 4 * sizeof(double));

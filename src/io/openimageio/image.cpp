@@ -61,7 +61,8 @@ constexpr struct {
                      {TETCAST_CHANNEL_OPTICAL_DEPTH, "optical_depth", true},
                      {TETCAST_CHANNEL_TRANSMITTANCE, "transmittance", true},
                      {TETCAST_CHANNEL_PATH_LENGTH, "path_length", false},
-                     {TETCAST_CHANNEL_ERROR, "error", false}};
+                     {TETCAST_CHANNEL_ERROR, "error", false},
+                     {TETCAST_CHANNEL_VALUE, "value", false}};
 
 std::vector<Extra> extras_of(const TetcastFrame *frame) {
   std::vector<Extra> extras;
