@@ -413,6 +413,15 @@ int tetcast_frame_groups(const TetcastFrame *frame) { return frame->groups; }
 const TetcastChannelInfo *tetcast_channel_info(int i) { return i >= 0 && i < TC_CHANNELS ? &tc_channels[i].info : NULL; }
 const void *tetcast_frame_channel(const TetcastFrame *frame, TetcastChannel channel) { return tc_frame_channel(frame, channel); }
 
+TetcastStatus tetcast_frame_recolor(TetcastFrame *frame, const TetcastTransferFunction *transfer_function) {
+  TC_ENTRY;
+  if (!frame) return TETCAST_ERROR_ARGUMENT;
+  CHECK_GIVEN(frame->context, transfer_function);
+  if (!tc_frame_channel(frame, TETCAST_CHANNEL_VALUE)) return ARGUMENT(frame->context, "to colour a frame anew it must have the channel value");
+  tc_frame_recolor(frame, &transfer_function->pieces);
+  return TETCAST_OK;
+}
+
 /* ── scene ── */
 
 TetcastStatus tetcast_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **scene) {
@@ -488,6 +497,16 @@ TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene, const Tet
   return tc_scene_set_transfer_function(scene, transfer_function);
 }
 
+TetcastStatus tetcast_scene_set_blend(TetcastScene *scene, TetcastBlend blend) {
+  TC_ENTRY;
+  if (!scene) return TETCAST_ERROR_ARGUMENT;
+  if ((unsigned)blend > TETCAST_BLEND_ADDITIVE) return ARGUMENT(scene->context, "unknown blend mode %d", (int)blend);
+  scene->blend = blend;
+  return TETCAST_OK;
+}
+
+TetcastBlend tetcast_scene_blend(const TetcastScene *scene) { return scene->blend; }
+
 TetcastCoefficientsDesc tetcast_coefficients_desc_default(void) { return (TetcastCoefficientsDesc){.cookie = TC_COOKIE}; }
 
 static TetcastStatus check_fields(TetcastContext *context, const TetcastField *const *fields, int count, const char *what) {
@@ -558,10 +577,14 @@ static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderD
     const TetcastChannelInfo *info = &tc_channels[i].info;
     if (!frame->channel[i]) continue;
     if (info->needs_coefficients && !c) return ARGUMENT(context, "with a transfer function there is no channel %s", info->name);
+    if (info->needs_blend && !scene->blend) return ARGUMENT(context, "with the blend mode composite there is no channel %s", info->name);
     if (info->of_groups && frame->groups != c->groups) {
       return ARGUMENT(context, "a frame of %d groups, but the scene has %d", frame->groups, c->groups);
     }
   }
+  if (c && scene->blend) return ARGUMENT(context, "with coefficients there is only the blend mode composite");
+  if (scene->blend && !exact) return ARGUMENT(context, "with another blend mode than composite there is only the exact integrator");
+  if (scene->blend && error) return ARGUMENT(context, "with another blend mode than composite there is no channel for the error");
   if (c && !exact) return ARGUMENT(context, "with coefficients there is only the exact integrator");
   if (!c && !scene->values) return ARGUMENT(context, "the scene has no field yet");
   if (!c && !scene->transfer) return ARGUMENT(context, "the scene has no transfer function yet");

@@ -8,6 +8,7 @@
 #include <tetcast/array.h>
 #include <tetcast/context.h>
 #include <tetcast/status.h>
+#include <tetcast/transfer_function.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -29,7 +30,11 @@ typedef enum TetcastChannel {
   TETCAST_CHANNEL_TRANSMITTANCE = 8, /* exp(−optical depth) */
 
   /* Of a scene with coefficients: length of the ray's parts in the mesh's cells, in its unit; cells that overlap count each. */
-  TETCAST_CHANNEL_PATH_LENGTH = 16
+  TETCAST_CHANNEL_PATH_LENGTH = 16,
+
+  /* Of a scene in a blend mode other than composite: the value along the ray, in the scalar's unit, or that times the mesh's unit of length; of several samples
+   * the mean of those that have one; NaN where none has. */
+  TETCAST_CHANNEL_VALUE = 32
 } TetcastChannel;
 
 #define TETCAST_MAX_GROUPS 256
@@ -56,6 +61,8 @@ typedef struct TetcastChannelInfo {
   int of_groups;
   /* Not 0: only scenes with coefficients have it. */
   int needs_coefficients;
+  /* Not 0: only scenes in a blend mode other than composite have it. */
+  int needs_blend;
 } TetcastChannelInfo;
 
 /* Channel i = 0, 1, …, in the order in which files hold them; NULL beyond the last. Static storage. */
@@ -79,6 +86,11 @@ TETCAST_API int tetcast_frame_groups(const TetcastFrame *frame);
 /* The values of one channel, [height][width] of the frame's type, [height][width][groups] for those of groups, rows next to each other, valid
  * while the frame lives; NULL if the frame was made without it. */
 TETCAST_API const void *tetcast_frame_channel(const TetcastFrame *frame, TetcastChannel channel);
+
+/* Colours the pixels of a picture in a blend mode anew, without rendering: by the transfer function's colours at the values of the channel
+ * TETCAST_CHANNEL_VALUE, which the frame must have (TETCAST_ERROR_ARGUMENT), times the pixels' alpha, which stay as they are. It is, to the
+ * bit, what tetcast_scene_render() gives with that transfer function. */
+TETCAST_API TetcastStatus tetcast_frame_recolor(TetcastFrame *frame, const TetcastTransferFunction *transfer_function);
 
 #ifdef __cplusplus
 }

@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 
+#include <tetcast/blend.h>
 #include <tetcast/camera.h>
 #include <tetcast/context.h>
 #include <tetcast/field.h>
@@ -44,6 +45,15 @@ TETCAST_API TetcastStatus tetcast_scene_create_preset(const TetcastScene *scene,
 /* Sets or replaces the transfer function; what is needed of it is copied. Must not run while this scene renders. On error
  * the scene keeps its former one, or its coefficients. */
 TETCAST_API TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer_function);
+
+/* Sets what is made of the scalar along rays; a new scene has TETCAST_BLEND_COMPOSITE. With another blend mode the scene needs a field and a transfer
+ * function, of which only the colours are used: nothing is hidden by its extinction. A pixel has the colour of its value, premultiplied by its alpha,
+ * which is 1 where the ray meets anything (with several samples, the share of them that do), else 0; its value is the mean of
+ * those. An unknown blend mode is TETCAST_ERROR_ARGUMENT. Must not run while this scene renders. */
+TETCAST_API TetcastStatus tetcast_scene_set_blend(TetcastScene *scene, TetcastBlend blend);
+
+/* The scene's blend mode. */
+TETCAST_API TetcastBlend tetcast_scene_blend(const TetcastScene *scene);
 
 /* Extinction κ and emission j as they are, for one or several groups (of wavelength, of energy, …). Along a ray, each group has
  *
@@ -89,8 +99,8 @@ TETCAST_API TetcastRenderDesc tetcast_render_desc_default(void);
 typedef struct TetcastRenderStats {
   int64_t rays;         /* cast: width × height × samples */
   int64_t segments;     /* cells crossed over a length > 0, summed over the rays */
-  double error;         /* largest of the pixels' bounds as in TETCAST_CHANNEL_ERROR; NaN with another integrator than the exact one, and where
-                         * neither that channel nor a tolerance is asked for */
+  double error;         /* largest of the pixels' bounds as in TETCAST_CHANNEL_ERROR; NaN with another integrator than the exact one, with a
+                         * blend mode other than composite, and where neither that channel nor a tolerance is asked for */
   int64_t lost;         /* rays whose walk ended before the boundary: 0, or a defect of tetcast */
   const char *isa;      /* instruction set of the kernel that ran; static storage */
   const char *precision; /* of the arithmetic: "double", or "single" (of the walk, rays where it may not do apart); static storage */
@@ -102,6 +112,9 @@ typedef struct TetcastRenderStats {
  * With coefficients, the pixel's colour is the radiance: of three groups as red, green, blue; of one group grey; of another number
  * grey, their mean. Its alpha is 1 − transmittance, the mean of the groups'. Only the exact integrator works with them, to rounding whatever the
  * tolerance. Channels of groups need a frame with the scene's number of groups.
+ *
+ * With another blend mode than composite, values are exact up to rounding in double precision, whatever the tolerance; other integrators, coefficients and
+ * the error channel are TETCAST_ERROR_ARGUMENT then.
  *
  * With one instruction set the result has the same bits for any
  * number of threads. After an error or a cancelled call the frame's pixels are unspecified and the scene is as before. Calls with

@@ -4,6 +4,7 @@
 #define TETCAST_TETCAST_H
 
 #include <tetcast/array.h>
+#include <tetcast/blend.h>
 #include <tetcast/camera.h>
 #include <tetcast/cells.h>
 #include <tetcast/context.h>

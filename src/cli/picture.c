@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "picture.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,6 +21,35 @@ void picture_await_image(Run *run) {
   run->image_pending = false;
 }
 
+/* Whether colours go from the least to the largest value of the picture: integrals along rays are not in the field's range. */
+static bool range_of_picture(const Run *run) {
+  const RenderOptions *options = &run->options;
+  return render_options_blend(options) == TETCAST_BLEND_ADDITIVE && !render_options_given(options, OPTION_TRANSFER) &&
+         render_options_range(options) != RANGE_FIXED && !(run->stage.uniform && run->stage.array);
+}
+
+/* Colours the picture by the preset over the range of its values. */
+static TetcastStatus color_by_picture(Run *run) {
+  const bool wide = tetcast_frame_type(run->values) == TETCAST_TYPE_FLOAT64;
+  const void *values = tetcast_frame_channel(run->values, TETCAST_CHANNEL_VALUE);
+  const int64_t count = tetcast_frame_width(run->values) * tetcast_frame_height(run->values);
+  double range[2] = {INFINITY, -INFINITY};
+  for (int64_t i = 0; i < count; i++) {
+    const double value = wide ? ((const double *)values)[i] : (double)((const float *)values)[i];
+    if (!isfinite(value))
+      continue;
+    range[0] = fmin(range[0], value);
+    range[1] = fmax(range[1], value);
+  }
+  if (range[0] > range[1])
+    return TETCAST_OK;
+  Stage *stage = &run->stage;
+  tetcast_transfer_function_destroy(&stage->transfer_function);
+  const TetcastStatus status =
+      tetcast_scene_create_preset(stage->scene, render_options_preset(&run->options), range[0], range[1], &stage->transfer_function);
+  return status == TETCAST_OK ? tetcast_frame_recolor(run->values, stage->transfer_function) : status;
+}
+
 int picture_create_frame(Run *run) {
   const RenderOptions *options = &run->options;
   TetcastFrameDesc desc = tetcast_frame_desc_default();
@@ -29,7 +59,12 @@ int picture_create_frame(Run *run) {
   desc.channels = render_options_channels(options);
   if (tetcast_scene_groups(run->stage.scene) > 0)
     desc.groups = tetcast_scene_groups(run->stage.scene);
-  const TetcastStatus status = tetcast_frame_create(run->stage.context, &desc, &run->frame);
+  TetcastStatus status = tetcast_frame_create(run->stage.context, &desc, &run->frame);
+  if (status == TETCAST_OK && range_of_picture(run)) {
+    desc.channels = TETCAST_CHANNEL_VALUE;
+    desc.pixels = (void *)tetcast_frame_pixels(run->frame);
+    status = tetcast_frame_create(run->stage.context, &desc, &run->values);
+  }
   return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }
 
@@ -74,13 +109,16 @@ int picture_render(Run *run) {
   desc.samples = (int)run->options.samples;
   desc.isa = (TetcastIsa)run->options.isa;
   desc.tolerance = stats->tolerance = run->options.tolerance;
+  stats->blend = render_option_choice(OPTION_BLEND, (int)render_options_blend(&run->options));
   if (run->options.integrator)
     render_option_integrator(run->options.integrator, &desc.integrator, &desc.integrator_n);
   for (int i = 0; i < stats->repeats; i++) {
     const double start = cli_seconds();
     desc.progress = cli_progress("rendering");
-    const TetcastStatus status =
-        tetcast_scene_render(run->stage.scene, &run->stage.camera, &desc, run->frame, &stats->render);
+    TetcastStatus status = tetcast_scene_render(run->stage.scene, &run->stage.camera, &desc,
+                                                run->values ? run->values : run->frame, &stats->render);
+    if (status == TETCAST_OK && run->values)
+      status = color_by_picture(run);
     stats->render_seconds[i] = cli_seconds() - start;
     cli_progress_clear();
     if (status != TETCAST_OK || cli_interrupted())

@@ -21,6 +21,7 @@ typedef struct Run {
   bool image_pending; /* image_thread still has to be waited for */
   Stage stage;
   TetcastFrame *frame;
+  TetcastFrame *values; /* the same pixels with their values, where colours follow from them; NULL: they don't */
   RunStats stats; /* of the last picture */
 } Run;
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#include <math.h>
 #include <pthread.h>
 #include <semaphore.h>
 #include <stdio.h>
@@ -35,6 +36,10 @@ static int check(Run *run) {
   if (!series_wanted(options)) /* else it has many names */
     fileset_add(&files, "--output", options->output, true);
   int code = fileset_check(&files, "render");
+  if (code < 0 && series_wanted(options) && render_options_blend(options) == TETCAST_BLEND_ADDITIVE &&
+      !render_options_given(options, OPTION_TRANSFER) && render_options_range(options) != RANGE_FIXED &&
+      render_options_range(options) != RANGE_STEP)
+    code = cli_usage_error("render", "--blend additive: the range of all steps' pictures is known when they are made; expected --range LO,HI or --range step");
   if (code >= 0)
     return code;
   code = stage_begin(&run->stage, options);
@@ -163,6 +168,7 @@ int tetcast_cli_render(int argc, char **argv) {
     code = perform(&run);
   }
   picture_await_image(&run);
+  tetcast_frame_destroy(&run.values);
   tetcast_frame_destroy(&run.frame);
   stage_release(&run.stage);
   free(run.stats.render_seconds);

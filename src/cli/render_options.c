@@ -18,10 +18,13 @@
 
 /* A picture is made by a transfer function or from coefficients. */
 #define DIRECT   (BIT(OPTION_EXTINCTION) | BIT(OPTION_EMISSION) | BIT(OPTION_GROUPS))
-#define TRANSFER (BIT(OPTION_ARRAY) | BIT(OPTION_TRANSFER) | BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | BIT(OPTION_OPACITY_MODEL))
+#define TRANSFER                                                                                                        \
+  (BIT(OPTION_ARRAY) | BIT(OPTION_TRANSFER) | BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | BIT(OPTION_OPACITY_MODEL) | \
+   BIT(OPTION_BLEND))
 
 /* Order of the library's enumerations. */
 static const char *const opacity_models[] = {"unit-distance", "vtk-unstructured", "ospray", NULL};
+static const char *const blends[] = {"composite", "maximum", "minimum", "average", "additive", NULL};
 static const char *const isas[] = {"auto", "scalar", "avx2", "avx512", NULL};
 static const char *const traversals[] = {"shell", "faces", NULL};
 static const char *const pixel_types[] = {"", "uint8", "uint16", "half", "float", "double", NULL};
@@ -56,6 +59,8 @@ const RenderRow render_table[OPTION_COUNT] = {
                          .form = "expected NAME, NAME:component or NAME:mag"},
     [OPTION_GROUPS] = {"groups", KIND_FLAG, AT(groups), .excludes = TRANSFER, .only = COMMAND_RENDER,
                        .form = "expected true or false"},
+    [OPTION_BLEND] = {"blend", KIND_CHOICE, AT(blend), .names = blends, .excludes = DIRECT,
+                      .form = "expected composite, maximum, minimum, average or additive"},
     [OPTION_EYE] = {"eye", KIND_NUMBERS, AT(eye), 3, 3, -DBL_MAX, DBL_MAX, .form = "expected three numbers x,y,z"},
     [OPTION_TARGET] = {"target", KIND_NUMBERS, AT(target), 3, 3, -DBL_MAX, DBL_MAX,
                        .form = "expected three numbers x,y,z"},
@@ -78,7 +83,7 @@ const RenderRow render_table[OPTION_COUNT] = {
     [OPTION_TOLERANCE] = {"tolerance", KIND_NUMBERS, AT(tolerance), 1, 1, 0, DBL_MAX, .only = COMMAND_RENDER,
                           .form = "expected a number, 0 or above"},
     [OPTION_CHANNELS] = {"channels", KIND_TEXT, AT(channels), .only = COMMAND_RENDER,
-                         .form = "expected error, or of radiance, optical_depth, transmittance and path_length some"},
+                         .form = "expected error, or value, or of radiance, optical_depth, transmittance and path_length some"},
     [OPTION_TRAVERSAL] = {"traversal", KIND_CHOICE, AT(traversal), .names = traversals,
                           .form = "expected shell or faces"},
     [OPTION_ISA] = {"isa", KIND_CHOICE, AT(isa), .names = isas,

@@ -29,6 +29,7 @@ typedef enum OptionId {
   OPTION_EXTINCTION,
   OPTION_EMISSION,
   OPTION_GROUPS,
+  OPTION_BLEND,
   OPTION_EYE,
   OPTION_TARGET,
   OPTION_UP,
@@ -72,7 +73,7 @@ typedef struct RenderOptions {
   double merge_tolerance; /* negative unless given */
   RangeKind range_kind;   /* RANGE_FIXED: options->range */
   double subdivide;
-  int opacity_model, traversal, isa, pixel_type; /* values of the library's enumerations */
+  int opacity_model, blend, traversal, isa, pixel_type; /* values of the library's enumerations */
   int cell_to_point, no_displacement, quiet, strict, resume, refine, no_plots, groups;
   uint64_t given;  /* bit 1 << OptionId: has a value from command line or scene file */
   uint64_t source; /* the same for the source being read alone */
@@ -122,6 +123,11 @@ static inline const char *render_options_preset(const RenderOptions *options) {
 /* Whether extinction or emission come from arrays of their own. */
 static inline bool render_options_direct(const RenderOptions *options) {
   return render_options_given(options, OPTION_EXTINCTION) || render_options_given(options, OPTION_EMISSION);
+}
+
+/* What is made of the values along rays. */
+static inline TetcastBlend render_options_blend(const RenderOptions *options) {
+  return render_options_given(options, OPTION_BLEND) ? (TetcastBlend)options->blend : TETCAST_BLEND_COMPOSITE;
 }
 
 /* The TetcastChannel bits of a list as --channels has it, 0: there is something else in it. */

@@ -26,6 +26,13 @@ static const char *find_mixture(const RenderOptions *options) {
   if (!render_options_direct(options)) {
     if (render_options_groups(options))
       return "--groups: needs --extinction or --emission";
+    if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE) {
+      if (options->integrator && strcmp(options->integrator, "exact"))
+        return "--integrator: with another --blend than composite there is only exact";
+      return channels & ~(uint32_t)TETCAST_CHANNEL_VALUE ? "--channels: only value is possible with another --blend than composite" : NULL;
+    }
+    if (channels & TETCAST_CHANNEL_VALUE)
+      return "--channels value: needs --blend maximum, minimum, average or additive";
     const TetcastChannelInfo *info = NULL;
     for (int i = 0; (info = tetcast_channel_info(i)) && !(channels & (uint32_t)info->channel && info->needs_coefficients);)
       i++;
@@ -33,6 +40,8 @@ static const char *find_mixture(const RenderOptions *options) {
   }
   if (options->integrator && strcmp(options->integrator, "exact"))
     return "--integrator: with --extinction or --emission there is only exact";
+  if (channels & TETCAST_CHANNEL_VALUE)
+    return "--channels value: not possible with --extinction or --emission";
   if (channels & TETCAST_CHANNEL_RADIANCE && !render_options_given(options, OPTION_EMISSION))
     return "--channels radiance: needs --emission";
   if (channels & (TETCAST_CHANNEL_OPTICAL_DEPTH | TETCAST_CHANNEL_TRANSMITTANCE) && !render_options_given(options, OPTION_EXTINCTION))
@@ -180,6 +189,11 @@ static int check_use(const RenderOptions *options) {
     return cli_usage_error("converge", "--time all: expected a single step");
   if (options->command == COMMAND_CONVERGE && render_options_range(options) == RANGE_SERIES)
     return cli_usage_error("converge", "--range series: expected two numbers, LO not above HI, or step");
+  if (options->command == COMMAND_CONVERGE && render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
+    return cli_usage_error(
+        "converge",
+        "--blend %s: values along rays are always exact, there is nothing to compare; a report is about composite",
+        render_option_choice(OPTION_BLEND, options->blend));
   char *mistaken = options->input ? scene_file_mistaken(options->input) : NULL;
   const int result = mistaken ? cli_usage_error(command_name(options), "%s", mistaken) : -1;
   free(mistaken);

@@ -239,6 +239,8 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
   }
   if (render_options_given(options, OPTION_GROUPS))
     json_object_set_new(scene, "groups", json_boolean(options->groups));
+  if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
+    json_object_set_new(scene, "blend", json_string(render_option_choice(OPTION_BLEND, options->blend)));
   json_object_set_new(scene, "camera", camera_object(camera));
   json_object_set_new(scene, "size", size_array(options->size));
   json_object_set_new(scene, "samples", json_integer((json_int_t)options->samples));

@@ -255,6 +255,8 @@ static char *explain_blank(const Probe *probe, const Look *look) {
         look->most_alpha, look->most_color);
   if (look->most_alpha >= visible)
     return cli_duplicate("what is there has the colours of the background");
+  if (render_options_blend(&run->options) != TETCAST_BLEND_COMPOSITE)
+    return cli_duplicate("what the camera sees is too small for these pixels");
   const double extinction = largest_extinction(run, run->stage.range);
   if (!(extinction > 0)) {
     char *support = explain_support(run);
@@ -375,7 +377,8 @@ char *sight_fault(const Run *run) {
   bool blank = !look.seen;
   if (direct) /* what is not 0 but too dark is told apart */
     blank = look.most_color == 0 && (data ? look.most_alpha == 0 : look.most_alpha < visible);
-  const bool solid = !data && look.seen && !look.translucent;
+  const bool projected = render_options_blend(&run->options) != TETCAST_BLEND_COMPOSITE; /* in which nothing hides anything */
+  const bool solid = !data && !projected && look.seen && !look.translucent;
   const double *bounds = run->stage.info.bounds;
   Probe probe = {.run = run};
   for (int k = 0; k < 3; k++)

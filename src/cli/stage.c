@@ -259,6 +259,8 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
   if (status == TETCAST_OK)
     status = stage->field ? tetcast_scene_set_field(stage->scene, stage->field)
                           : coefficients_set(stage->scene, options, &stage->coefficients);
+  if (status == TETCAST_OK)
+    status = tetcast_scene_set_blend(stage->scene, render_options_blend(options));
   if (status != TETCAST_OK)
     return cli_failed(status);
   tetcast_volume_info(stage->volume, &stage->info);

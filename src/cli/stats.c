@@ -17,6 +17,7 @@ json_t *stats_object(const RunStats *stats) {
   json_object_set_new(object, "rays", json_integer(stats->render.rays));
   json_object_set_new(object, "segments", json_integer(stats->render.segments));
   json_object_set_new(object, "tolerance", json_real(stats->tolerance));
+  json_object_set_new(object, "blend", json_string(stats->blend));
   json_object_set_new(object, "error", isfinite(stats->render.error) ? json_real(stats->render.error) : json_null());
   json_object_set_new(object, "peak_rss_bytes",
                       json_integer((json_int_t)usage.ru_maxrss * 1024)); /* Linux counts in KiB */

@@ -11,6 +11,7 @@
 typedef struct RunStats {
   double read_seconds, prepare_seconds, write_seconds;
   double tolerance;
+  const char *blend;
   double *render_seconds; /* [repeats] */
   int repeats, threads;
   TetcastRenderStats render; /* of one frame */

@@ -7,6 +7,7 @@
 #include "gather/length.h"
 #if !TC_SINGLE
 #include "gather/coefficients.h"
+#include "gather/value.h"
 #endif
 #if TC_LANES == 1
 #include "gather/sampled.h"
@@ -16,9 +17,11 @@
 #if TC_SINGLE
 #define TC_GATHERERS(GATHERER) GATHERER(emission, TcEmission) GATHERER(length, TcLength)
 #elif TC_LANES > 1
-#define TC_GATHERERS(GATHERER) GATHERER(emission, TcEmission) GATHERER(length, TcLength) GATHERER(groups, TcGroups)
+#define TC_GATHERERS(GATHERER) GATHERER(emission, TcEmission) GATHERER(length, TcLength) GATHERER(groups, TcGroups) GATHERER(value, TcValue)
 #else
-#define TC_GATHERERS(GATHERER) GATHERER(emission, TcEmission) GATHERER(length, TcLength) GATHERER(groups, TcGroups) GATHERER(sampled, TcSampled)
+#define TC_GATHERERS(GATHERER)                                                                                        \
+  GATHERER(emission, TcEmission) GATHERER(length, TcLength) GATHERER(groups, TcGroups) GATHERER(value, TcValue) \
+  GATHERER(sampled, TcSampled)
 #endif
 
 enum {

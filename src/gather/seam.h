@@ -13,6 +13,8 @@
 #ifndef TC_GATHER_SEAM_H
 #define TC_GATHER_SEAM_H
 
+#include <tetcast/blend.h>
+
 #include "base/lanes.h"
 #include "optics/tolerance.h"
 #include "volume/coefficients.h"
@@ -26,6 +28,7 @@ typedef struct TcGatherJob {
   TcTolerance tolerance;
   const struct TcSampler *sampler;
   const TcCoefficients *coefficients;
+  TetcastBlend blend; /* which number is made of the values along a ray */
   bool to_the_end;  /* coefficients: what is wanted is not complete where all groups are opaque */
   double rounding;  /* with TC_BOUND: of a value that was interpolated, relative to it */
   int exponent;     /* of the volume's unit of length */

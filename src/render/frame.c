@@ -54,9 +54,31 @@ static void store_channel(TetcastFrame *frame, int channel, int64_t x, int64_t y
   }
 }
 
+void tc_frame_recolor(TetcastFrame *frame, const TcPieces *colors) {
+  const bool wide = frame->type == TETCAST_TYPE_FLOAT64;
+  const void *values = tc_frame_channel(frame, TETCAST_CHANNEL_VALUE);
+  for (int64_t y = 0; y < frame->height; ++y) {
+    char *row = (char *)frame->pixels + y * frame->row_stride;
+    for (int64_t x = 0; x < frame->width; ++x) {
+      const int64_t i = y * frame->width + x;
+      double rgba[4];
+      if (wide) {
+        double *pixel = (double *)(void *)row + 4 * x;
+        tc_color_value(colors, ((const double *)values)[i], pixel[3], rgba);
+        memcpy(pixel, rgba, 3 * sizeof *pixel);
+      } else {
+        float *pixel = (float *)(void *)row + 4 * x;
+        tc_color_value(colors, (double)((const float *)values)[i], (double)pixel[3], rgba);
+        for (int k = 0; k < 3; ++k) pixel[k] = (float)rgba[k];
+      }
+    }
+  }
+}
+
 double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, TcGathered *gathered) {
   char *row = (char *)frame->pixels + y * frame->row_stride;
   double rgba[4];
+  gathered->single = frame->type == TETCAST_TYPE_FLOAT32; /* so that colouring anew gives the same */
   gathered->error = tc_gathered_pixel(gathered, rgba);
   if (frame->type == TETCAST_TYPE_FLOAT64) {
     memcpy(row + x * 4 * (int64_t)sizeof(double), rgba, 4 * sizeof(double));

@@ -296,7 +296,7 @@ static State *prepare(const TcJob *job, TcWorker *worker) {
   State *state = worker->state;
   state->ground = (TcGround){.shell = job->shell, .values = job->values, .screen = job->screen, .resolution = job->resolution};
   state->job = (TcGatherJob){.sums = job->sums, .pieces = job->pieces, .values = job->values, .tolerance = job->tolerance, .sampler = job->sampler,
-                             .coefficients = job->coefficients, .to_the_end = job->to_the_end, .exponent = job->shell->volume->exponent,
+                             .coefficients = job->coefficients, .blend = job->blend, .to_the_end = job->to_the_end, .exponent = job->shell->volume->exponent,
                              .rounding = 8 * 0x1p-53};
   state->queue.ground = &state->ground;
   state->queue.next = state->queue.count = 0;

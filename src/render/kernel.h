@@ -3,6 +3,8 @@
 #ifndef TC_RENDER_KERNEL_H
 #define TC_RENDER_KERNEL_H
 
+#include <tetcast/blend.h>
+
 #include "optics/tolerance.h"
 #include "volume/coefficients.h"
 #include "walk/features.h"
@@ -39,6 +41,7 @@ typedef struct TcJob {
   int sums;                     /* numbers that are gathered for a ray */
   const struct TcSampler *sampler;
   const TcCoefficients *coefficients;
+  TetcastBlend blend;           /* other than composite: of values, with neither pieces nor coefficients */
   bool to_the_end;              /* of coefficients: all is wanted, though all groups be opaque */
   const struct TcIsaKernels *precise; /* single precision: those in which rays are walked again, */
   const struct TcJob *precise_job;    /* and what for */

@@ -83,6 +83,14 @@ void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job) {
     job->kernel = choose_row("groups", TC_WEIGHTS | TC_CELLS | measured);
     return;
   }
+  if (scene->blend) { /* of all of the volume: nothing is hidden */
+    job->shell = &scene->volume->shell;
+    job->values = scene->values;
+    job->blend = scene->blend;
+    job->sums = 2;
+    job->kernel = choose_row("value", association_of(scene->values));
+    return;
+  }
   see_through(scene->values, &scene->prepared->scaled->pieces, measured, job);
   job->shell = &scene->prepared->shell;
 }
@@ -158,7 +166,12 @@ static bool render_tile(const Render *render, int64_t tile_x, int64_t tile_y, Wo
     }
     return true;
   }
-  TcGathered gathered = {.sums = working->sums, .bounded = render->bounded, .coefficients = job->coefficients, .exponent = job->shell->volume->exponent};
+  TcGathered gathered = {.sums = working->sums, .bounded = render->bounded, .coefficients = job->coefficients,
+                         .exponent = job->shell->volume->exponent};
+  if (job->blend) {
+    gathered.colors = &render->scene->transfer->pieces;
+    gathered.value_exponent = job->values->exponent + (job->blend == TETCAST_BLEND_ADDITIVE ? gathered.exponent : 0);
+  }
   for (int64_t y = y0; y < y1; ++y) {
     for (int64_t x = x0; x < x1; ++x, gathered.sums += job->sums) {
       const double bound = tc_frame_store(render->frame, x, y, &gathered);
@@ -272,9 +285,9 @@ static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *de
   const TcResolution in_ray_space = tc_ray_resolution(scene->volume, sqrt(away2), largest);
   job->resolution = on_screen ? tc_screen_resolution(scene->volume, &setup, false, job->width, job->height, largest)
                               : in_ray_space;
-  if (!scene->coefficients) job->tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);
+  if (job->pieces) job->tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);
   if (!on_screen) return TETCAST_OK;
-  if (measured && !scene->coefficients && allow_single(scene, desc, &setup, render)) {
+  if (measured && job->pieces && allow_single(scene, desc, &setup, render)) {
     render->precise.resolution = in_ray_space; /* where rays are walked again, which are few */
   }
   return project(scene, render->kernels, &setup, job, &render->screen);
@@ -316,14 +329,14 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
                               TetcastFrame *frame, TetcastRenderStats *stats) {
   TetcastContext *context = scene->context;
   const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
-  const bool measured = exact && (desc->tolerance > 0 || tc_frame_channel(frame, TETCAST_CHANNEL_ERROR));
+  const bool measured = exact && !scene->blend && (desc->tolerance > 0 || tc_frame_channel(frame, TETCAST_CHANNEL_ERROR));
   Render render = {.scene = scene, .frame = frame};
   TcJob *job = &render.job;
   job->width = frame->width;
   job->height = frame->height;
   sample_grid(desc->samples, &job->samples_x, &job->samples_y);
   TetcastStatus status = tc_view_create(context, camera, scene->volume, (double)frame->width / (double)frame->height, &job->view);
-  if (!status && !scene->coefficients) status = tc_scene_prepare(scene);
+  if (!status && !scene->coefficients && !scene->blend) status = tc_scene_prepare(scene);
   TcSampler *sampler = NULL;
   if (!status && !exact) status = tc_sampler_create(context, desc->integrator, desc->integrator_n, &sampler);
   if (status) return status;
@@ -332,7 +345,7 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   tc_job_of_scene(scene, measured, job);
   const bool one_by_one = sampler || scene->volume->traversal == TETCAST_TRAVERSAL_FACES;
   render.bounded = measured;
-  render.plain = !scene->coefficients && frame->type == TETCAST_TYPE_FLOAT64 && !measured;
+  render.plain = job->pieces && frame->type == TETCAST_TYPE_FLOAT64 && !measured;
   render.kernels = tc_kernels_for(one_by_one ? TETCAST_ISA_SCALAR : desc->isa);
   status = plan(scene, desc, measured, &render); /* which may take those in single precision */
   TetcastRenderStats sum = {.rays = frame->width * frame->height * desc->samples, .isa = render.kernels->name, .precision = render.kernels->precision};

@@ -45,6 +45,7 @@ struct TetcastScene {
   TcRows *values;                    /* NULL: no field yet */
   TetcastTransferFunction *transfer; /* NULL: none set yet, or coefficients */
   TcCoefficients *coefficients;      /* NULL: none set yet, or a transfer function */
+  TetcastBlend blend;
   TcPrepared *prepared;
 };
 
@@ -54,6 +55,8 @@ TetcastCamera tc_camera_default(const double bounds[6], double aspect);
 
 TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *desc, TetcastFrame **frame);
 void tc_frame_destroy(TetcastFrame *frame);
+/* Colours pixels by their values in a channel that the frame has. */
+void tc_frame_recolor(TetcastFrame *frame, const TcPieces *colors);
 /* Stores a pixel and its values of all channels. Returns a bound on its error, rounding to the frame's type included; NaN: not known. */
 double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, TcGathered *gathered);
 
@@ -74,7 +77,7 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
 /* Colour map `name` over [low, high] with an extinction that makes a good first picture of the scene's volume and field. */
 TetcastStatus tc_scene_preset(const TetcastScene *scene, const char *name, double low, double high, TetcastTransferFunction **transfer);
 
-/* What a kernel needs of the scene besides rays: the shell, the field, the transfer function or coefficients; `bound`: the error is wanted. */
+/* What a kernel needs of the scene besides rays: the shell, the field, the transfer function, coefficients or blend mode; `bound`: the error is wanted. */
 void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job);
 /* The same of a volume, all of it, with a transfer function in its units. */
 void tc_job_of(const TetcastVolume *volume, const TcRows *values, const TcPieces *pieces, TcJob *job);

@@ -219,6 +219,7 @@ typedef struct Gather {
   PlainLight light;
   PlainResult result;
   long double *groups; /* [groups][2]: radiance, depth */
+  long double least, most, integral; /* of values, in a blend mode */
   double *sums;
   double seen; /* the depth up to which the path has been seen */
 } Gather;
@@ -284,11 +285,18 @@ static void add_cell(Gather *gather, const Face face[2], uint32_t cell, const ui
   gather->result.length += (long double)z1 - z0;
   ++gather->result.segments;
   if (scene->coefficients) gather_groups(gather, face, cell, from, to, z1 - z0);
-  if (!scene->pieces) return;
+  if (!scene->pieces && !scene->blend) return;
   const double s0 = scalar_at(scene, &face[0], cell, vertices), s1 = scalar_at(scene, &face[1], cell, vertices);
   if (isnan(s0) || isnan(s1)) return; /* two faces have all four vertices between them */
   const double begin = from > 0 ? s0 + from * (s1 - s0) : s0, end = to < 1 ? s0 + to * (s1 - s0) : s1;
-  plain_add(&gather->light, scene->pieces, z1 - z0, begin, end);
+  if (scene->pieces) {
+    plain_add(&gather->light, scene->pieces, z1 - z0, begin, end);
+    return;
+  }
+  gather->least = fminl(gather->least, fminl(begin, end));
+  gather->most = fmaxl(gather->most, fmaxl(begin, end));
+  gather->integral += ((long double)begin + end) / 2 * ((long double)z1 - z0);
+  gather->result.met += (long double)z1 - z0;
 }
 
 /* ── the walk ── */
@@ -425,17 +433,26 @@ static void end_groups(const Gather *gather, double *sums) {
   sums[3 * c->groups + 1] = (double)opacity;
 }
 
+static void end_values(const Gather *gather, double *sums) {
+  const long double met = gather->result.met;
+  const long double of[] = {[TETCAST_BLEND_MAXIMUM] = gather->most, [TETCAST_BLEND_MINIMUM] = gather->least,
+                            [TETCAST_BLEND_AVERAGE] = gather->integral / met, [TETCAST_BLEND_ADDITIVE] = gather->integral};
+  sums[1] = met > 0;
+  sums[0] = met > 0 ? (double)of[gather->space->scene->blend] : 0;
+}
+
 PlainResult plain_cast(const PlainScene *scene, const PlainRay *ray, double *sums) {
   const TetcastVolume *volume = scene->shell->volume;
   Space space = {.scene = scene};
   if (scene->screen) begin_on_screen(ray, scene->screen, &space);
   else begin_in_ray_space(&ray->line, volume, &space);
-  Gather gather = {.space = &space};
+  Gather gather = {.space = &space, .least = INFINITY, .most = -INFINITY};
   if (scene->coefficients) gather.groups = calloc(2 * (size_t)scene->coefficients->groups, sizeof *gather.groups);
   if (volume->traversal == TETCAST_TRAVERSAL_FACES) cross_all(&gather);
   else gather.result.lost = !walk_all(&gather);
   gather.result.depth = gather.light.depth;
   if (scene->coefficients) end_groups(&gather, sums);
+  else if (scene->blend) end_values(&gather, sums);
   else if (scene->pieces) plain_end(&gather.light, sums);
   else sums[0] = (double)gather.result.length;
   free(gather.groups);

@@ -5,6 +5,8 @@
 #ifndef PLAIN_H
 #define PLAIN_H
 
+#include <tetcast/blend.h>
+
 #include "optics/transfer.h"
 #include "volume/coefficients.h"
 #include "walk/ray.h"
@@ -21,12 +23,13 @@ void plain_add(PlainLight *light, const TcPieces *pieces, double length, double 
 /* Premultiplied red, green, blue, and alpha. */
 void plain_end(const PlainLight *light, double rgba[4]);
 
-/* What is looked at: either pieces and values, or coefficients, or none of them, which gives the length alone. */
+/* What is looked at: either pieces and values, or coefficients, or values in a blend mode, or none of them, which gives the length alone. */
 typedef struct PlainScene {
   const TcShell *shell;
   const TcRows *values;
   const TcPieces *pieces; /* in the volume's units */
   const TcCoefficients *coefficients;
+  TetcastBlend blend; /* other than composite: of values, without pieces or coefficients */
   /* Vertices as they were projected in double precision (walk/screen.h); NULL: in ray space. */
   const TcScreen *screen;
 } PlainScene;
@@ -44,12 +47,13 @@ PlainRay plain_ray(const TcView *view, int64_t width, int64_t height, int sample
 typedef struct PlainResult {
   long double length; /* in cells, scaled */
   long double depth;  /* optical, with pieces */
+  long double met;    /* of the length, in a blend mode: in cells that have values */
   int64_t segments;   /* cells crossed over a length > 0 */
   bool lost;
 } PlainResult;
 
 /* Writes to `sums` what a kernel gathers for the ray, but bounds on errors, which are left as they are: with pieces red, green, blue, alpha; with
- * coefficients what gather/coefficients.h says; else the length. */
+ * coefficients what gather/coefficients.h says; in a blend mode what gather/value.h says; else the length. */
 PlainResult plain_cast(const PlainScene *scene, const PlainRay *ray, double *sums);
 
 #endif
