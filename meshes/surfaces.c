@@ -15,7 +15,9 @@ static int facets[MOST_FACETS][4];
 static double holes[MOST_HOLES][3];
 static int point_count, facet_count, hole_count;
 
-static void start(void) { point_count = facet_count = hole_count = 0; }
+static void start(void) {
+  point_count = facet_count = hole_count = 0;
+}
 
 static int add_point(double x, double y, double z) {
   if (point_count == MOST_POINTS)
@@ -78,8 +80,8 @@ static void add_sphere(const double center[3], double radius, int n) {
         const double x = sin(pi / 2 * i / n), y = sin(pi / 2 * j / n), z = sin(pi / 2 * k / n) * (side ? -1 : 1);
         const double scale = radius / sqrt(x * x + y * y + z * z);
         index[side][i + n][j + n] =
-          side && k == 0 ? index[0][i + n][j + n]
-                         : add_point(center[0] + scale * x, center[1] + scale * y, center[2] + scale * z);
+            side && k == 0 ? index[0][i + n][j + n]
+                           : add_point(center[0] + scale * x, center[1] + scale * y, center[2] + scale * z);
       }
   for (int side = 0; side < 2; side++)
     for (int sx = -1; sx <= 1; sx += 2)

@@ -17,52 +17,70 @@
 #define ARGUMENT(context, ...) tc_error(context, TETCAST_ERROR_ARGUMENT, __VA_ARGS__)
 
 /* The checks that every function which makes something begins with. */
-#define CHECK_OUT(context, out)                                            \
-  do {                                                                     \
-    if (!(out)) return ARGUMENT(context, "%s: no place for the result", __func__); \
-    *(out) = NULL;                                                         \
+#define CHECK_OUT(context, out)                                                                                        \
+  do {                                                                                                                 \
+    if (!(out))                                                                                                        \
+      return ARGUMENT(context, "%s: no place for the result", __func__);                                               \
+    *(out) = NULL;                                                                                                     \
   } while (0)
-#define CHECK_GIVEN(context, pointer) \
-  do {                                \
-    if (!(pointer)) return ARGUMENT(context, "%s: " #pointer " is NULL", __func__); \
+#define CHECK_GIVEN(context, pointer)                                                                                  \
+  do {                                                                                                                 \
+    if (!(pointer))                                                                                                    \
+      return ARGUMENT(context, "%s: " #pointer " is NULL", __func__);                                                  \
   } while (0)
-#define CHECK_DESC(context, desc)                                                                                  \
-  do {                                                                                                             \
-    CHECK_GIVEN(context, desc);                                                                                    \
-    if ((desc)->cookie != TC_COOKIE) {                                                                             \
-      return ARGUMENT(context, "%s: the description was not made with its ..._default() function", __func__); \
-    }                                                                                                              \
+#define CHECK_DESC(context, desc)                                                                                      \
+  do {                                                                                                                 \
+    CHECK_GIVEN(context, desc);                                                                                        \
+    if ((desc)->cookie != TC_COOKIE) {                                                                                 \
+      return ARGUMENT(context, "%s: the description was not made with its ..._default() function", __func__);          \
+    }                                                                                                                  \
   } while (0)
 
 /* ── version, status ── */
 
-const char *tetcast_version_string(void) { return TETCAST_VERSION_STRING; }
+const char *tetcast_version_string(void) {
+  return TETCAST_VERSION_STRING;
+}
 
 const char *tetcast_status_string(TetcastStatus status) {
   switch (status) {
-  case TETCAST_OK: return "no error";
-  case TETCAST_ERROR_ARGUMENT: return "invalid argument";
-  case TETCAST_ERROR_MEMORY: return "out of memory";
-  case TETCAST_ERROR_DATA: return "unusable data";
-  case TETCAST_ERROR_LIMIT: return "too large";
-  case TETCAST_ERROR_IO: return "input or output failed";
-  case TETCAST_ERROR_UNSUPPORTED: return "not supported";
-  case TETCAST_ERROR_CANCELLED: return "cancelled";
-  case TETCAST_ERROR_EMBREE: return "error in Embree";
-  case TETCAST_STATUS_COUNT: break;
+  case TETCAST_OK:
+    return "no error";
+  case TETCAST_ERROR_ARGUMENT:
+    return "invalid argument";
+  case TETCAST_ERROR_MEMORY:
+    return "out of memory";
+  case TETCAST_ERROR_DATA:
+    return "unusable data";
+  case TETCAST_ERROR_LIMIT:
+    return "too large";
+  case TETCAST_ERROR_IO:
+    return "input or output failed";
+  case TETCAST_ERROR_UNSUPPORTED:
+    return "not supported";
+  case TETCAST_ERROR_CANCELLED:
+    return "cancelled";
+  case TETCAST_ERROR_EMBREE:
+    return "error in Embree";
+  case TETCAST_STATUS_COUNT:
+    break;
   }
   return "unknown status";
 }
 
 /* ── context ── */
 
-TetcastContextDesc tetcast_context_desc_default(void) { return (TetcastContextDesc){.cookie = TC_COOKIE}; }
+TetcastContextDesc tetcast_context_desc_default(void) {
+  return (TetcastContextDesc){.cookie = TC_COOKIE};
+}
 
 TetcastStatus tetcast_context_create(const TetcastContextDesc *desc, TetcastContext **context) {
   TC_ENTRY;
   const TetcastContextDesc defaults = tetcast_context_desc_default();
-  if (!desc) desc = &defaults;
-  if (!context) return TETCAST_ERROR_ARGUMENT;
+  if (!desc)
+    desc = &defaults;
+  if (!context)
+    return TETCAST_ERROR_ARGUMENT;
   *context = NULL;
   if (desc->cookie != TC_COOKIE || desc->threads < 0 || desc->threads > 4096 || !desc->allocate != !desc->release) {
     return TETCAST_ERROR_ARGUMENT;
@@ -72,7 +90,8 @@ TetcastStatus tetcast_context_create(const TetcastContextDesc *desc, TetcastCont
 
 void tetcast_context_destroy(TetcastContext **context) {
   TC_ENTRY;
-  if (!context) return;
+  if (!context)
+    return;
   tc_context_destroy(*context);
   *context = NULL;
 }
@@ -80,12 +99,15 @@ void tetcast_context_destroy(TetcastContext **context) {
 TetcastStatus tetcast_context_set_threads(TetcastContext *context, int threads) {
   TC_ENTRY;
   CHECK_GIVEN(context, context);
-  if (threads < 0 || threads > 4096) return ARGUMENT(context, "%d threads: must be in [0, 4096]", threads);
+  if (threads < 0 || threads > 4096)
+    return ARGUMENT(context, "%d threads: must be in [0, 4096]", threads);
   atomic_store(&context->threads, threads);
   return TETCAST_OK;
 }
 
-int tetcast_context_threads(const TetcastContext *context) { return context ? tc_context_threads(context) : 1; }
+int tetcast_context_threads(const TetcastContext *context) {
+  return context ? tc_context_threads(context) : 1;
+}
 
 TetcastStatus tetcast_context_error(TetcastContext *context, TetcastStatus status, const char *format, ...) {
   TC_ENTRY;
@@ -107,12 +129,16 @@ void tetcast_context_message(TetcastContext *context, TetcastSeverity severity, 
 /* ── mesh, field ── */
 
 static TetcastStatus check_array(TetcastContext *context, const TetcastArray *array, const char *what) {
-  if (array->count < 0) return ARGUMENT(context, "%s: a count of %" PRId64, what, array->count);
-  if (array->count > 0 && !array->data) return ARGUMENT(context, "%s: no data", what);
+  if (array->count < 0)
+    return ARGUMENT(context, "%s: a count of %" PRId64, what, array->count);
+  if (array->count > 0 && !array->data)
+    return ARGUMENT(context, "%s: no data", what);
   return TETCAST_OK;
 }
 
-TetcastMeshDesc tetcast_mesh_desc_default(void) { return (TetcastMeshDesc){.cookie = TC_COOKIE}; }
+TetcastMeshDesc tetcast_mesh_desc_default(void) {
+  return (TetcastMeshDesc){.cookie = TC_COOKIE};
+}
 
 typedef struct MeshCreate {
   TetcastContext *context;
@@ -131,12 +157,15 @@ TetcastStatus tetcast_mesh_create(TetcastContext *context, const TetcastMeshDesc
   CHECK_GIVEN(context, context);
   CHECK_DESC(context, desc);
   TetcastStatus status = check_array(context, &desc->vertices, "vertices");
-  if (!status) status = check_array(context, &desc->tetrahedra, "tetrahedra");
-  if (status) return status;
+  if (!status)
+    status = check_array(context, &desc->tetrahedra, "tetrahedra");
+  if (status)
+    return status;
   if (desc->vertices.count > 0 && !tc_type_is_float(desc->vertices.type)) {
     return ARGUMENT(context, "vertices must be float32 or float64");
   }
-  if (desc->tetrahedra.count > 0 && (tc_type_size(desc->tetrahedra.type) == 0 || tc_type_is_float(desc->tetrahedra.type))) {
+  if (desc->tetrahedra.count > 0 &&
+      (tc_type_size(desc->tetrahedra.type) == 0 || tc_type_is_float(desc->tetrahedra.type))) {
     return ARGUMENT(context, "tetrahedra must be of an integer type");
   }
   return tc_call(mesh_create, &(MeshCreate){context, desc, mesh}, NULL);
@@ -144,21 +173,34 @@ TetcastStatus tetcast_mesh_create(TetcastContext *context, const TetcastMeshDesc
 
 void tetcast_mesh_destroy(TetcastMesh **mesh) {
   TC_ENTRY;
-  if (!mesh) return;
+  if (!mesh)
+    return;
   tc_mesh_destroy(*mesh);
   *mesh = NULL;
 }
 
-int64_t tetcast_mesh_vertex_count(const TetcastMesh *mesh) { return mesh->vertices.count; }
-int64_t tetcast_mesh_tetrahedron_count(const TetcastMesh *mesh) { return mesh->tetrahedra.count; }
-TetcastArray tetcast_mesh_vertices(const TetcastMesh *mesh) { return mesh->vertices; }
-TetcastArray tetcast_mesh_tetrahedra(const TetcastMesh *mesh) { return mesh->tetrahedra; }
+int64_t tetcast_mesh_vertex_count(const TetcastMesh *mesh) {
+  return mesh->vertices.count;
+}
+int64_t tetcast_mesh_tetrahedron_count(const TetcastMesh *mesh) {
+  return mesh->tetrahedra.count;
+}
+TetcastArray tetcast_mesh_vertices(const TetcastMesh *mesh) {
+  return mesh->vertices;
+}
+TetcastArray tetcast_mesh_tetrahedra(const TetcastMesh *mesh) {
+  return mesh->tetrahedra;
+}
 void tetcast_mesh_vertex(const TetcastMesh *mesh, int64_t i, double position[3]) {
   TC_ENTRY;
   tc_mesh_vertex(mesh, i, position);
 }
-void tetcast_mesh_tetrahedron(const TetcastMesh *mesh, int64_t i, int64_t indices[4]) { tc_mesh_tetrahedron(mesh, i, indices); }
-void tetcast_mesh_bounds(const TetcastMesh *mesh, double bounds[6]) { memcpy(bounds, mesh->bounds, sizeof mesh->bounds); }
+void tetcast_mesh_tetrahedron(const TetcastMesh *mesh, int64_t i, int64_t indices[4]) {
+  tc_mesh_tetrahedron(mesh, i, indices);
+}
+void tetcast_mesh_bounds(const TetcastMesh *mesh, double bounds[6]) {
+  memcpy(bounds, mesh->bounds, sizeof mesh->bounds);
+}
 
 typedef struct MeshExamine {
   TetcastContext *context;
@@ -181,34 +223,41 @@ TetcastStatus tetcast_mesh_health(TetcastContext *context, const TetcastMesh *me
 
 /* ── cells ── */
 
-TetcastCellsDesc tetcast_cells_desc_default(void) { return (TetcastCellsDesc){.cookie = TC_COOKIE, .type = TETCAST_CELL_HEXAHEDRON}; }
+TetcastCellsDesc tetcast_cells_desc_default(void) {
+  return (TetcastCellsDesc){.cookie = TC_COOKIE, .type = TETCAST_CELL_HEXAHEDRON};
+}
 
 static TetcastStatus check_cells(TetcastContext *context, const TetcastCellsDesc *desc) {
   const struct {
     const TetcastArray *array;
     const char *name;
     bool integers;
-  } arrays[] = {{&desc->vertices, "vertices", false},   {&desc->offsets, "offsets", true},
+  } arrays[] = {{&desc->vertices, "vertices", false},        {&desc->offsets, "offsets", true},
                 {&desc->connectivity, "connectivity", true}, {&desc->faces, "faces", true},
                 {&desc->face_offsets, "face_offsets", true}, {&desc->orders, "orders", false},
                 {&desc->rational, "rational", false}};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; ++i) {
     const TetcastStatus status = check_array(context, arrays[i].array, arrays[i].name);
-    if (status) return status;
+    if (status)
+      return status;
     const TetcastType type = arrays[i].array->type;
     if (arrays[i].array->count > 0 && (tc_type_size(type) == 0 || (arrays[i].integers && tc_type_is_float(type)))) {
-      return ARGUMENT(context, "%s must be of %s type", arrays[i].name, arrays[i].integers ? "an integer" : "a numeric");
+      return ARGUMENT(context, "%s must be of %s type", arrays[i].name,
+                      arrays[i].integers ? "an integer" : "a numeric");
     }
   }
-  if (desc->vertices.count > 0 && !tc_type_is_float(desc->vertices.type)) return ARGUMENT(context, "vertices must be float32 or float64");
+  if (desc->vertices.count > 0 && !tc_type_is_float(desc->vertices.type))
+    return ARGUMENT(context, "vertices must be float32 or float64");
   if (desc->subdivision < 0 || desc->subdivision > TETCAST_MAX_SUBDIVISION) {
-    return ARGUMENT(context, "a subdivision of %d: must be in [0, %d]", desc->subdivision, (int)TETCAST_MAX_SUBDIVISION);
+    return ARGUMENT(context, "a subdivision of %d: must be in [0, %d]", desc->subdivision,
+                    (int)TETCAST_MAX_SUBDIVISION);
   }
   if (desc->offsets.count == 0 && (desc->types || tc_cell_nodes((unsigned)desc->type) == 0)) {
     return ARGUMENT(context, "cells that are not all of one type with a fixed number of nodes need offsets");
   }
   if (desc->rational.count > 0 && desc->rational.count != desc->vertices.count) {
-    return ARGUMENT(context, "%" PRId64 " rational weights for %" PRId64 " vertices", desc->rational.count, desc->vertices.count);
+    return ARGUMENT(context, "%" PRId64 " rational weights for %" PRId64 " vertices", desc->rational.count,
+                    desc->vertices.count);
   }
   return TETCAST_OK;
 }
@@ -235,20 +284,29 @@ TetcastStatus tetcast_cells_cut(TetcastContext *context, const TetcastCellsDesc 
 
 void tetcast_cut_destroy(TetcastCut **cut) {
   TC_ENTRY;
-  if (!cut) return;
+  if (!cut)
+    return;
   tc_cut_destroy(*cut);
   *cut = NULL;
 }
 
-TetcastArray tetcast_cut_tetrahedra(const TetcastCut *cut) { return tc_cut_tetrahedra(cut); }
-TetcastArray tetcast_cut_sources(const TetcastCut *cut) { return tc_cut_sources(cut); }
+TetcastArray tetcast_cut_tetrahedra(const TetcastCut *cut) {
+  return tc_cut_tetrahedra(cut);
+}
+TetcastArray tetcast_cut_sources(const TetcastCut *cut) {
+  return tc_cut_sources(cut);
+}
 bool tetcast_cut_interpolate(const TetcastCut *cut, const TetcastArray *values, int components, double *result) {
   TC_ENTRY;
   return tc_cut_interpolate(cut, values, components, result);
 }
-void tetcast_cut_info(const TetcastCut *cut, TetcastCutInfo *info) { *info = *tc_cut_info(cut); }
+void tetcast_cut_info(const TetcastCut *cut, TetcastCutInfo *info) {
+  *info = *tc_cut_info(cut);
+}
 
-TetcastFieldDesc tetcast_field_desc_default(void) { return (TetcastFieldDesc){.cookie = TC_COOKIE}; }
+TetcastFieldDesc tetcast_field_desc_default(void) {
+  return (TetcastFieldDesc){.cookie = TC_COOKIE};
+}
 
 TetcastStatus tetcast_field_create(TetcastContext *context, const TetcastFieldDesc *desc, TetcastField **field) {
   TC_ENTRY;
@@ -256,8 +314,10 @@ TetcastStatus tetcast_field_create(TetcastContext *context, const TetcastFieldDe
   CHECK_GIVEN(context, context);
   CHECK_DESC(context, desc);
   const TetcastStatus status = check_array(context, &desc->values, "field values");
-  if (status) return status;
-  if (desc->values.count > 0 && tc_type_size(desc->values.type) == 0) return ARGUMENT(context, "field values need a type");
+  if (status)
+    return status;
+  if (desc->values.count > 0 && tc_type_size(desc->values.type) == 0)
+    return ARGUMENT(context, "field values need a type");
   if ((unsigned)desc->association > TETCAST_CORNER) {
     return ARGUMENT(context, "a field belongs to points or to cells");
   }
@@ -266,13 +326,18 @@ TetcastStatus tetcast_field_create(TetcastContext *context, const TetcastFieldDe
 
 void tetcast_field_destroy(TetcastField **field) {
   TC_ENTRY;
-  if (!field) return;
+  if (!field)
+    return;
   tc_field_destroy(*field);
   *field = NULL;
 }
 
-TetcastAssociation tetcast_field_association(const TetcastField *field) { return field->association; }
-TetcastArray tetcast_field_values(const TetcastField *field) { return field->values; }
+TetcastAssociation tetcast_field_association(const TetcastField *field) {
+  return field->association;
+}
+TetcastArray tetcast_field_values(const TetcastField *field) {
+  return field->values;
+}
 double tetcast_field_value(const TetcastField *field, int64_t i) {
   TC_ENTRY;
   return tc_array_double(&field->values, field->values.stride, i, 0);
@@ -284,7 +349,9 @@ void tetcast_field_range(const TetcastField *field, double range[2], int64_t *no
 
 /* ── volume ── */
 
-TetcastVolumeDesc tetcast_volume_desc_default(void) { return (TetcastVolumeDesc){.cookie = TC_COOKIE}; }
+TetcastVolumeDesc tetcast_volume_desc_default(void) {
+  return (TetcastVolumeDesc){.cookie = TC_COOKIE};
+}
 
 typedef struct VolumeCreate {
   TetcastContext *context;
@@ -302,7 +369,8 @@ TetcastStatus tetcast_volume_create(TetcastContext *context, const TetcastMesh *
                                     TetcastVolume **volume) {
   TC_ENTRY;
   const TetcastVolumeDesc defaults = tetcast_volume_desc_default();
-  if (!desc) desc = &defaults;
+  if (!desc)
+    desc = &defaults;
   CHECK_OUT(context, volume);
   CHECK_GIVEN(context, context);
   CHECK_GIVEN(context, mesh);
@@ -316,12 +384,15 @@ TetcastStatus tetcast_volume_create(TetcastContext *context, const TetcastMesh *
 
 void tetcast_volume_destroy(TetcastVolume **volume) {
   TC_ENTRY;
-  if (!volume) return;
+  if (!volume)
+    return;
   tc_volume_destroy(*volume);
   *volume = NULL;
 }
 
-void tetcast_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info) { tc_volume_info(volume, info); }
+void tetcast_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info) {
+  tc_volume_info(volume, info);
+}
 
 /* ── transfer function ── */
 
@@ -341,22 +412,27 @@ TetcastStatus tetcast_transfer_function_create(TetcastContext *context, const Te
   return tc_transfer_create(context, desc, transfer_function);
 }
 
-const char *tetcast_preset_name(int i) { return tc_preset_name(i); }
+const char *tetcast_preset_name(int i) {
+  return tc_preset_name(i);
+}
 
 void tetcast_transfer_function_destroy(TetcastTransferFunction **transfer_function) {
   TC_ENTRY;
-  if (!transfer_function) return;
+  if (!transfer_function)
+    return;
   tc_transfer_destroy(*transfer_function);
   *transfer_function = NULL;
 }
 
 const double *tetcast_transfer_function_color(const TetcastTransferFunction *transfer_function, int64_t *count) {
-  if (count) *count = transfer_function->color_count;
+  if (count)
+    *count = transfer_function->color_count;
   return transfer_function->color;
 }
 
 const double *tetcast_transfer_function_extinction(const TetcastTransferFunction *transfer_function, int64_t *count) {
-  if (count) *count = transfer_function->extinction_count;
+  if (count)
+    *count = transfer_function->extinction_count;
   return transfer_function->extinction;
 }
 
@@ -378,12 +454,14 @@ TetcastStatus tetcast_frame_create(TetcastContext *context, const TetcastFrameDe
   CHECK_GIVEN(context, context);
   CHECK_DESC(context, desc);
   if (desc->width < 1 || desc->height < 1 || desc->width > largest || desc->height > largest) {
-    return ARGUMENT(context, "a frame of %" PRId64 " × %" PRId64 " pixels: each must be in [1, %" PRId64 "]", desc->width, desc->height,
-                    largest);
+    return ARGUMENT(context, "a frame of %" PRId64 " × %" PRId64 " pixels: each must be in [1, %" PRId64 "]",
+                    desc->width, desc->height, largest);
   }
-  if (!tc_type_is_float(desc->type)) return ARGUMENT(context, "a frame's type must be float32 or float64");
+  if (!tc_type_is_float(desc->type))
+    return ARGUMENT(context, "a frame's type must be float32 or float64");
   uint32_t known = 0;
-  for (int i = 0; i < TC_CHANNELS; ++i) known |= tc_channels[i].info.channel;
+  for (int i = 0; i < TC_CHANNELS; ++i)
+    known |= tc_channels[i].info.channel;
   if (desc->channels & ~known) {
     return ARGUMENT(context, "a frame with channels 0x%" PRIx32 ": some are unknown", desc->channels);
   }
@@ -399,25 +477,44 @@ TetcastStatus tetcast_frame_create(TetcastContext *context, const TetcastFrameDe
 
 void tetcast_frame_destroy(TetcastFrame **frame) {
   TC_ENTRY;
-  if (!frame) return;
+  if (!frame)
+    return;
   tc_frame_destroy(*frame);
   *frame = NULL;
 }
 
-int64_t tetcast_frame_width(const TetcastFrame *frame) { return frame->width; }
-int64_t tetcast_frame_height(const TetcastFrame *frame) { return frame->height; }
-TetcastType tetcast_frame_type(const TetcastFrame *frame) { return frame->type; }
-const void *tetcast_frame_pixels(const TetcastFrame *frame) { return frame->pixels; }
-int64_t tetcast_frame_row_stride(const TetcastFrame *frame) { return frame->row_stride; }
-int tetcast_frame_groups(const TetcastFrame *frame) { return frame->groups; }
-const TetcastChannelInfo *tetcast_channel_info(int i) { return i >= 0 && i < TC_CHANNELS ? &tc_channels[i].info : NULL; }
-const void *tetcast_frame_channel(const TetcastFrame *frame, TetcastChannel channel) { return tc_frame_channel(frame, channel); }
+int64_t tetcast_frame_width(const TetcastFrame *frame) {
+  return frame->width;
+}
+int64_t tetcast_frame_height(const TetcastFrame *frame) {
+  return frame->height;
+}
+TetcastType tetcast_frame_type(const TetcastFrame *frame) {
+  return frame->type;
+}
+const void *tetcast_frame_pixels(const TetcastFrame *frame) {
+  return frame->pixels;
+}
+int64_t tetcast_frame_row_stride(const TetcastFrame *frame) {
+  return frame->row_stride;
+}
+int tetcast_frame_groups(const TetcastFrame *frame) {
+  return frame->groups;
+}
+const TetcastChannelInfo *tetcast_channel_info(int i) {
+  return i >= 0 && i < TC_CHANNELS ? &tc_channels[i].info : NULL;
+}
+const void *tetcast_frame_channel(const TetcastFrame *frame, TetcastChannel channel) {
+  return tc_frame_channel(frame, channel);
+}
 
 TetcastStatus tetcast_frame_recolor(TetcastFrame *frame, const TetcastTransferFunction *transfer_function) {
   TC_ENTRY;
-  if (!frame) return TETCAST_ERROR_ARGUMENT;
+  if (!frame)
+    return TETCAST_ERROR_ARGUMENT;
   CHECK_GIVEN(frame->context, transfer_function);
-  if (!tc_frame_channel(frame, TETCAST_CHANNEL_VALUE)) return ARGUMENT(frame->context, "to colour a frame anew it must have the channel value");
+  if (!tc_frame_channel(frame, TETCAST_CHANNEL_VALUE))
+    return ARGUMENT(frame->context, "to colour a frame anew it must have the channel value");
   tc_frame_recolor(frame, &transfer_function->pieces);
   return TETCAST_OK;
 }
@@ -434,7 +531,8 @@ TetcastStatus tetcast_scene_create(TetcastContext *context, const TetcastVolume 
 
 void tetcast_scene_destroy(TetcastScene **scene) {
   TC_ENTRY;
-  if (!scene) return;
+  if (!scene)
+    return;
   tc_scene_destroy(*scene);
   *scene = NULL;
 }
@@ -451,17 +549,21 @@ static TetcastStatus set_field(void *data) {
 
 TetcastStatus tetcast_scene_set_field(TetcastScene *scene, const TetcastField *field) {
   TC_ENTRY;
-  if (!scene) return TETCAST_ERROR_ARGUMENT;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
   CHECK_GIVEN(scene->context, field);
   return tc_call(set_field, &(SetField){scene, field}, NULL);
 }
 
 TetcastStatus tetcast_scene_share_field(TetcastScene *scene, const TetcastScene *other) {
   TC_ENTRY;
-  if (!scene) return TETCAST_ERROR_ARGUMENT;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
   CHECK_GIVEN(scene->context, other);
-  if (other->volume != scene->volume) return ARGUMENT(scene->context, "a field of a scene of another volume");
-  if (!other->values) return ARGUMENT(scene->context, "the other scene has no field");
+  if (other->volume != scene->volume)
+    return ARGUMENT(scene->context, "a field of a scene of another volume");
+  if (!other->values)
+    return ARGUMENT(scene->context, "the other scene has no field");
   tc_scene_share_field(scene, other);
   return TETCAST_OK;
 }
@@ -481,39 +583,54 @@ static TetcastStatus create_preset(void *data) {
 TetcastStatus tetcast_scene_create_preset(const TetcastScene *scene, const char *name, double low, double high,
                                           TetcastTransferFunction **transfer_function) {
   TC_ENTRY;
-  if (!scene) return TETCAST_ERROR_ARGUMENT;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
   TetcastContext *context = scene->context;
   CHECK_OUT(context, transfer_function);
   CHECK_GIVEN(context, name);
-  if (!scene->values) return ARGUMENT(context, "a preset needs a scene with a field");
-  if (!isfinite(low) || !isfinite(high) || low > high) return ARGUMENT(context, "range %g to %g of a preset", low, high);
+  if (!scene->values)
+    return ARGUMENT(context, "a preset needs a scene with a field");
+  if (!isfinite(low) || !isfinite(high) || low > high)
+    return ARGUMENT(context, "range %g to %g of a preset", low, high);
   return tc_call(create_preset, &(CreatePreset){scene, name, low, high, transfer_function}, NULL);
 }
 
-TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer_function) {
+TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene,
+                                                  const TetcastTransferFunction *transfer_function) {
   TC_ENTRY;
-  if (!scene) return TETCAST_ERROR_ARGUMENT;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
   CHECK_GIVEN(scene->context, transfer_function);
   return tc_scene_set_transfer_function(scene, transfer_function);
 }
 
 TetcastStatus tetcast_scene_set_blend(TetcastScene *scene, TetcastBlend blend) {
   TC_ENTRY;
-  if (!scene) return TETCAST_ERROR_ARGUMENT;
-  if ((unsigned)blend > TETCAST_BLEND_ADDITIVE) return ARGUMENT(scene->context, "unknown blend mode %d", (int)blend);
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
+  if ((unsigned)blend > TETCAST_BLEND_ADDITIVE)
+    return ARGUMENT(scene->context, "unknown blend mode %d", (int)blend);
   scene->blend = blend;
   return TETCAST_OK;
 }
 
-TetcastBlend tetcast_scene_blend(const TetcastScene *scene) { return scene->blend; }
+TetcastBlend tetcast_scene_blend(const TetcastScene *scene) {
+  return scene->blend;
+}
 
-TetcastCoefficientsDesc tetcast_coefficients_desc_default(void) { return (TetcastCoefficientsDesc){.cookie = TC_COOKIE}; }
+TetcastCoefficientsDesc tetcast_coefficients_desc_default(void) {
+  return (TetcastCoefficientsDesc){.cookie = TC_COOKIE};
+}
 
-static TetcastStatus check_fields(TetcastContext *context, const TetcastField *const *fields, int count, const char *what) {
-  if (count < 0 || count > TETCAST_MAX_GROUPS) return ARGUMENT(context, "%s of %d groups: at most %d are possible", what, count, TETCAST_MAX_GROUPS);
-  if (count > 0 && !fields) return ARGUMENT(context, "%s: no fields", what);
+static TetcastStatus check_fields(TetcastContext *context, const TetcastField *const *fields, int count,
+                                  const char *what) {
+  if (count < 0 || count > TETCAST_MAX_GROUPS)
+    return ARGUMENT(context, "%s of %d groups: at most %d are possible", what, count, TETCAST_MAX_GROUPS);
+  if (count > 0 && !fields)
+    return ARGUMENT(context, "%s: no fields", what);
   for (int i = 0; i < count; ++i) {
-    if (!fields[i]) return ARGUMENT(context, "%s: the field of group %d is NULL", what, i);
+    if (!fields[i])
+      return ARGUMENT(context, "%s: the field of group %d is NULL", what, i);
   }
   return TETCAST_OK;
 }
@@ -530,23 +647,32 @@ static TetcastStatus set_coefficients(void *data) {
 
 TetcastStatus tetcast_scene_set_coefficients(TetcastScene *scene, const TetcastCoefficientsDesc *desc) {
   TC_ENTRY;
-  if (!scene) return TETCAST_ERROR_ARGUMENT;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
   TetcastContext *context = scene->context;
   CHECK_DESC(context, desc);
   TetcastStatus status = check_fields(context, desc->extinction, desc->extinction_count, "extinction");
-  if (!status) status = check_fields(context, desc->emission, desc->emission_count, "emission");
-  if (status) return status;
-  if (desc->extinction_count == 0 && desc->emission_count == 0) return ARGUMENT(context, "coefficients: neither extinction nor emission");
+  if (!status)
+    status = check_fields(context, desc->emission, desc->emission_count, "emission");
+  if (status)
+    return status;
+  if (desc->extinction_count == 0 && desc->emission_count == 0)
+    return ARGUMENT(context, "coefficients: neither extinction nor emission");
   if (desc->extinction_count > 1 && desc->emission_count > 1 && desc->extinction_count != desc->emission_count) {
-    return ARGUMENT(context, "an extinction of %d groups with an emission of %d: they must be as many, or one of the two for all",
-                    desc->extinction_count, desc->emission_count);
+    return ARGUMENT(
+        context, "an extinction of %d groups with an emission of %d: they must be as many, or one of the two for all",
+        desc->extinction_count, desc->emission_count);
   }
   return tc_call(set_coefficients, &(SetCoefficients){scene, desc}, NULL);
 }
 
-int tetcast_scene_groups(const TetcastScene *scene) { return scene->coefficients ? scene->coefficients->groups : 0; }
+int tetcast_scene_groups(const TetcastScene *scene) {
+  return scene->coefficients ? scene->coefficients->groups : 0;
+}
 
-TetcastRenderDesc tetcast_render_desc_default(void) { return (TetcastRenderDesc){.cookie = TC_COOKIE, .integrator_n = 1, .samples = 1}; }
+TetcastRenderDesc tetcast_render_desc_default(void) {
+  return (TetcastRenderDesc){.cookie = TC_COOKIE, .integrator_n = 1, .samples = 1};
+}
 
 static TetcastStatus check_camera(TetcastContext *context, const TetcastCamera *camera) {
   for (int k = 0; k < 3; ++k) {
@@ -571,25 +697,36 @@ static TetcastStatus check_camera(TetcastContext *context, const TetcastCamera *
 /* Whether the scene is complete, and is one that fills the frame's channels. */
 static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderDesc *desc, const TetcastFrame *frame) {
   TetcastContext *context = scene->context;
-  const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT, error = tc_frame_channel(frame, TETCAST_CHANNEL_ERROR) != NULL;
+  const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT,
+             error = tc_frame_channel(frame, TETCAST_CHANNEL_ERROR) != NULL;
   const TcCoefficients *c = scene->coefficients;
   for (int i = 0; i < TC_CHANNELS; ++i) {
     const TetcastChannelInfo *info = &tc_channels[i].info;
-    if (!frame->channel[i]) continue;
-    if (info->needs_coefficients && !c) return ARGUMENT(context, "with a transfer function there is no channel %s", info->name);
-    if (info->needs_blend && !scene->blend) return ARGUMENT(context, "with the blend mode composite there is no channel %s", info->name);
+    if (!frame->channel[i])
+      continue;
+    if (info->needs_coefficients && !c)
+      return ARGUMENT(context, "with a transfer function there is no channel %s", info->name);
+    if (info->needs_blend && !scene->blend)
+      return ARGUMENT(context, "with the blend mode composite there is no channel %s", info->name);
     if (info->of_groups && frame->groups != c->groups) {
       return ARGUMENT(context, "a frame of %d groups, but the scene has %d", frame->groups, c->groups);
     }
   }
-  if (c && scene->blend) return ARGUMENT(context, "with coefficients there is only the blend mode composite");
-  if (scene->blend && !exact) return ARGUMENT(context, "with another blend mode than composite there is only the exact integrator");
-  if (scene->blend && error) return ARGUMENT(context, "with another blend mode than composite there is no channel for the error");
-  if (c && !exact) return ARGUMENT(context, "with coefficients there is only the exact integrator");
-  if (!c && !scene->values) return ARGUMENT(context, "the scene has no field yet");
-  if (!c && !scene->transfer) return ARGUMENT(context, "the scene has no transfer function yet");
+  if (c && scene->blend)
+    return ARGUMENT(context, "with coefficients there is only the blend mode composite");
+  if (scene->blend && !exact)
+    return ARGUMENT(context, "with another blend mode than composite there is only the exact integrator");
+  if (scene->blend && error)
+    return ARGUMENT(context, "with another blend mode than composite there is no channel for the error");
+  if (c && !exact)
+    return ARGUMENT(context, "with coefficients there is only the exact integrator");
+  if (!c && !scene->values)
+    return ARGUMENT(context, "the scene has no field yet");
+  if (!c && !scene->transfer)
+    return ARGUMENT(context, "the scene has no transfer function yet");
   if (!exact && (desc->tolerance > 0 || error)) {
-    return ARGUMENT(context, "only the exact integrator knows its error: no %s with another", error ? "channel for the error" : "tolerance");
+    return ARGUMENT(context, "only the exact integrator knows its error: no %s with another",
+                    error ? "channel for the error" : "tolerance");
   }
   return TETCAST_OK;
 }
@@ -607,29 +744,35 @@ static TetcastStatus scene_render(void *data) {
   return tc_scene_render(call->scene, call->camera, &call->desc, call->frame, call->stats);
 }
 
-TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
-                                   TetcastFrame *frame, TetcastRenderStats *stats) {
+TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamera *camera,
+                                   const TetcastRenderDesc *desc, TetcastFrame *frame, TetcastRenderStats *stats) {
   TC_ENTRY;
   const TetcastRenderDesc defaults = tetcast_render_desc_default();
-  if (!desc) desc = &defaults;
-  if (!scene) return TETCAST_ERROR_ARGUMENT;
+  if (!desc)
+    desc = &defaults;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
   TetcastContext *context = scene->context;
   CHECK_GIVEN(context, camera);
   CHECK_DESC(context, desc);
   CHECK_GIVEN(context, frame);
-  if (desc->samples < 1 || desc->samples > 65536) return ARGUMENT(context, "%d samples: must be in [1, 65536]", desc->samples);
+  if (desc->samples < 1 || desc->samples > 65536)
+    return ARGUMENT(context, "%d samples: must be in [1, 65536]", desc->samples);
   static const int least[] = {INT32_MIN, 1, 1, 1, 2}, most[] = {INT32_MAX, 1 << 20, 1 << 20, TETCAST_MAX_GAUSS, 4096};
-  if ((unsigned)desc->integrator > TETCAST_INTEGRATOR_TABLE) return ARGUMENT(context, "unknown integrator %d", (int)desc->integrator);
+  if ((unsigned)desc->integrator > TETCAST_INTEGRATOR_TABLE)
+    return ARGUMENT(context, "unknown integrator %d", (int)desc->integrator);
   if (desc->integrator_n < least[desc->integrator] || desc->integrator_n > most[desc->integrator]) {
-    return ARGUMENT(context, "an integrator with n = %d: must be in [%d, %d]", desc->integrator_n, least[desc->integrator],
-                    most[desc->integrator]);
+    return ARGUMENT(context, "an integrator with n = %d: must be in [%d, %d]", desc->integrator_n,
+                    least[desc->integrator], most[desc->integrator]);
   }
-  if ((unsigned)desc->isa > TETCAST_ISA_AVX512) return ARGUMENT(context, "unknown instruction set %d", (int)desc->isa);
+  if ((unsigned)desc->isa > TETCAST_ISA_AVX512)
+    return ARGUMENT(context, "unknown instruction set %d", (int)desc->isa);
   if (!(desc->tolerance >= 0) || !isfinite(desc->tolerance)) {
     return ARGUMENT(context, "a tolerance of %g: must be 0 or a positive number", desc->tolerance);
   }
   TetcastStatus status = check_scene(scene, desc, frame);
-  if (!status) status = check_camera(context, camera);
+  if (!status)
+    status = check_camera(context, camera);
   SceneRender call = {scene, camera, *desc, frame, stats};
   return status ? status : tc_call(scene_render, &call, &call.desc.progress);
 }

@@ -10,12 +10,11 @@ extern "C" {
 
 typedef enum TetcastProjection { TETCAST_PERSPECTIVE = 0, TETCAST_ORTHOGRAPHIC } TetcastProjection;
 
-/* Where the picture is taken from, in the mesh's coordinates. Each pixel is a ray that starts at the eye (perspective) or
- * on the plane through the eye (orthographic) and only sees what lies ahead, also from inside the mesh. Pixel (i, j),
- * j = 0 at the top, of W × H looks along
- *     forward + (2(i + ½)/W − 1) · W/H · tan(fovy/2) · right + (1 − 2(j + ½)/H) · tan(fovy/2) · up
- * with right = forward × up and up made perpendicular to forward; orthographic rays start at the eye moved by the same
- * expression with height/2 in place of tan(fovy/2). */
+/* Where the picture is taken from, in the mesh's coordinates. Each pixel is a ray that starts at the eye (perspective)
+ * or on the plane through the eye (orthographic) and only sees what lies ahead, also from inside the mesh. Pixel (i,
+ * j), j = 0 at the top, of W × H looks along forward + (2(i + ½)/W − 1) · W/H · tan(fovy/2) · right + (1 − 2(j + ½)/H)
+ * · tan(fovy/2) · up with right = forward × up and up made perpendicular to forward; orthographic rays start at the eye
+ * moved by the same expression with height/2 in place of tan(fovy/2). */
 typedef struct TetcastCamera {
   double eye[3];    /* less than 2^499 (1e150) times the mesh's largest coordinate; beyond, rendering is
                        TETCAST_ERROR_ARGUMENT */

@@ -52,8 +52,8 @@ typedef struct TetcastProgress {
 } TetcastProgress;
 
 typedef struct TetcastContextDesc {
-  uint32_t cookie;                 /* set by tetcast_context_desc_default(); catches an uninitialised struct */
-  int threads; /* how many threads may work in a call, while the caller's waits; 0: as many as processors */
+  uint32_t cookie; /* set by tetcast_context_desc_default(); catches an uninitialised struct */
+  int threads;     /* how many threads may work in a call, while the caller's waits; 0: as many as processors */
   TetcastMessageFunction *message; /* NULL: messages are dropped */
   void *message_user;
   TetcastAllocateFunction *allocate; /* both or neither; NULL: the C library's. Embree, VTK, TetGen and OpenImageIO */
@@ -80,14 +80,14 @@ TETCAST_API int tetcast_context_threads(const TetcastContext *context);
  * `context` may be NULL (nothing is sent). */
 TETCAST_API TetcastStatus tetcast_context_error(TetcastContext *context, TetcastStatus status, const char *format, ...)
 #if defined(__GNUC__)
-  __attribute__((format(printf, 3, 4)))
+    __attribute__((format(printf, 3, 4)))
 #endif
-  ;
+    ;
 TETCAST_API void tetcast_context_message(TetcastContext *context, TetcastSeverity severity, const char *format, ...)
 #if defined(__GNUC__)
-  __attribute__((format(printf, 3, 4)))
+    __attribute__((format(printf, 3, 4)))
 #endif
-  ;
+    ;
 
 #ifdef __cplusplus
 }

@@ -17,33 +17,35 @@
 extern "C" {
 #endif
 
-/* What a file holds: tetrahedra (other volumetric cells are cut into them on reading), and arrays over points and cells.
- * Immutable; may be read from several threads at a time. */
+/* What a file holds: tetrahedra (other volumetric cells are cut into them on reading), and arrays over points and
+ * cells. Immutable; may be read from several threads at a time. */
 typedef struct TetcastDataset TetcastDataset;
 
 /* What to read of a file. */
 typedef struct TetcastDatasetDesc {
-  uint32_t cookie;   /* set by tetcast_dataset_desc_default(); catches an uninitialised struct */
-  const char *block; /* of a file of several blocks those of this name, or in the group of this name; NULL: all */
-  int64_t step;      /* of a file of several time steps this one, from 0; negative: from the end, -1 is the last */
-  double time;       /* the step at this time instead; NaN: none asked for */
-  double merge_tolerance; /* negative: only points of different pieces are merged, where they coincide exactly. Else all points no
-                             further than this apart, in the file's unit of length; 0: all that coincide exactly */
-  const char *only; /* of the arrays none is read but those that this selector may name, see tetcast_dataset_field(),
-                     * and no other that is damaged is told of; legacy .vtk files have to be read whole; NULL: all */
-  bool cell_to_point;     /* fields of cell arrays are of points: at each the plain mean over the file's cells that use it, component by
-                           * component; only volumetric cells count, and not those whose value is NaN or infinite */
-  int subdivision;        /* what each edge of a curved cell is cut into, to TETCAST_MAX_SUBDIVISION; 0: as its nodes lie */
-  bool no_displacement;   /* points are where an Exodus file has them at first; else they are moved by its displacements
-                           * of the step: the first   vector of the points whose name begins with "dis", in any case of
-                           * letters */
+  uint32_t cookie;        /* set by tetcast_dataset_desc_default(); catches an uninitialised struct */
+  const char *block;      /* of a file of several blocks those of this name, or in the group of this name; NULL: all */
+  int64_t step;           /* of a file of several time steps this one, from 0; negative: from the end, -1 is the last */
+  double time;            /* the step at this time instead; NaN: none asked for */
+  double merge_tolerance; /* negative: only points of different pieces are merged, where they coincide exactly. Else all
+                             points no further than this apart, in the file's unit of length; 0: all that coincide
+                             exactly */
+  const char *only;   /* of the arrays none is read but those that this selector may name, see tetcast_dataset_field(),
+                       * and no other that is damaged is told of; legacy .vtk files have to be read whole; NULL: all */
+  bool cell_to_point; /* fields of cell arrays are of points: at each the plain mean over the file's cells that use it,
+                       * component by component; only volumetric cells count, and not those whose value is NaN or
+                       * infinite */
+  int subdivision;    /* what each edge of a curved cell is cut into, to TETCAST_MAX_SUBDIVISION; 0: as its nodes lie */
+  bool no_displacement; /* points are where an Exodus file has them at first; else they are moved by its displacements
+                         * of the step: the first   vector of the points whose name begins with "dis", in any case of
+                         * letters */
 } TetcastDatasetDesc;
 
 /* All blocks, the first step, no tolerance, curved cells cut as their nodes lie. */
 TETCAST_API TetcastDatasetDesc tetcast_dataset_desc_default(void);
 
-/* Format i = 0, 1, … of those that can be read: what it is called, and the usual ends of its files' names, e.g. ".ex2 .exo .e".
- * Static storage; either may be NULL. False beyond the last. */
+/* Format i = 0, 1, … of those that can be read: what it is called, and the usual ends of its files' names, e.g. ".ex2
+ * .exo .e". Static storage; either may be NULL. False beyond the last. */
 TETCAST_API bool tetcast_dataset_format(int i, const char **name, const char **extensions);
 
 /* Reads a file in one of these formats; which one is told by content, then by extension. desc NULL: the default.
@@ -68,19 +70,19 @@ TETCAST_API bool tetcast_dataset_format(int i, const char **name, const char **e
  * piece first in the file wins that does not call the point a duplicate; where some pieces lack an array, it is NaN,
  * which is drawn transparent. Points with coordinates that are NaN or infinite are left out, and so are the cells that
  * use them. A warning says how often each of these was so. */
-TETCAST_API TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, const TetcastDatasetDesc *desc,
-                                               TetcastDataset **dataset);
+TETCAST_API TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path,
+                                               const TetcastDatasetDesc *desc, TetcastDataset **dataset);
 
 /* Frees the dataset and sets *dataset to NULL. NULL and pointer to NULL do nothing. */
 TETCAST_API void tetcast_dataset_destroy(TetcastDataset **dataset);
 
-/* How many cells of type i = 0, 1, … the file has, largest count first; name e.g. "tetrahedron", "hexahedron", "triangle", static
- * storage. False beyond the last. Counted as they are in the file, before anything is cut, but without ghosts
- * and those left out for their coordinates. */
+/* How many cells of type i = 0, 1, … the file has, largest count first; name e.g. "tetrahedron", "hexahedron",
+ * "triangle", static storage. False beyond the last. Counted as they are in the file, before anything is cut, but
+ * without ghosts and those left out for their coordinates. */
 TETCAST_API bool tetcast_dataset_cell_type(const TetcastDataset *dataset, int i, const char **name, int64_t *count);
 
 typedef struct TetcastDatasetArray {
-  const char *name;               /* valid while the dataset lives */
+  const char *name;     /* valid while the dataset lives */
   const char *selector; /* what selects it, see tetcast_dataset_field(): its name, or "NAME:cell" where that is a point
                            array's; as long */
   TetcastAssociation association; /* of points or cells */
@@ -89,8 +91,9 @@ typedef struct TetcastDatasetArray {
   bool active;                    /* the file marks it as its active scalars */
 } TetcastDatasetArray;
 
-/* Describes numeric array i = 0, 1, …, in the file's order, point arrays first. False beyond the last. A file of several blocks without any
- * array has the cell array "block": the number of each cell's block in tetcast_dataset_block(). */
+/* Describes numeric array i = 0, 1, …, in the file's order, point arrays first. False beyond the last. A file of
+ * several blocks without any array has the cell array "block": the number of each cell's block in
+ * tetcast_dataset_block(). */
 TETCAST_API bool tetcast_dataset_array(const TetcastDataset *dataset, int i, TetcastDatasetArray *array);
 
 /* The name of array i = 0, 1, … that the file has and that was not read: it is not the one that the description asked
@@ -115,8 +118,8 @@ typedef struct TetcastDatasetPieces {
 /* What became of the pieces. NULL: all 0. */
 TETCAST_API TetcastDatasetPieces tetcast_dataset_pieces(const TetcastDataset *dataset);
 
-/* The name of block i = 0, 1, … of the file, e.g. "fluid/zone 1" within a group, whether it was read or not; valid while the dataset
- * lives. NULL beyond the last, and for files without blocks. */
+/* The name of block i = 0, 1, … of the file, e.g. "fluid/zone 1" within a group, whether it was read or not; valid
+ * while the dataset lives. NULL beyond the last, and for files without blocks. */
 TETCAST_API const char *tetcast_dataset_block(const TetcastDataset *dataset, int i);
 
 /* The time of step i = 0, 1, … of the file, ascending. False beyond the last, and for files without time steps. */
@@ -125,7 +128,8 @@ TETCAST_API bool tetcast_dataset_time(const TetcastDataset *dataset, int64_t i, 
 /* The step that was read; 0 for files without. */
 TETCAST_API int64_t tetcast_dataset_step(const TetcastDataset *dataset);
 
-/* What cutting its cells came to, all 0 when all of them were tetrahedra already. Vertices that were added come after the file's points. */
+/* What cutting its cells came to, all 0 when all of them were tetrahedra already. Vertices that were added come after
+ * the file's points. */
 TETCAST_API TetcastCutInfo tetcast_dataset_cut(const TetcastDataset *dataset);
 
 /* The tetrahedra. Arrays may be the dataset's own: it must outlive the mesh, which the caller destroys. */
@@ -146,16 +150,17 @@ TETCAST_API TetcastStatus tetcast_dataset_mesh(const TetcastDataset *dataset, Te
  * averaged if the description asked for that. The dataset must outlive the field,
  * which the caller destroys. `name` (may be NULL) receives the selector that selects the same again, valid while the
  * dataset lives. */
-TETCAST_API TetcastStatus tetcast_dataset_field(const TetcastDataset *dataset, const char *selector, TetcastField **field,
-                                                const char **name);
+TETCAST_API TetcastStatus tetcast_dataset_field(const TetcastDataset *dataset, const char *selector,
+                                                TetcastField **field, const char **name);
 
-/* Writes a mesh and its fields as .vtu (appended raw, zlib-compressed). names[i] names fields[i]. The file appears whole or not at
- * all. Fields must have as many values as the mesh has vertices or cells. count may be 0, names and fields then NULL. */
-TETCAST_API TetcastStatus tetcast_dataset_write(TetcastContext *context, const char *path, const TetcastMesh *mesh, int count,
-                                                const char *const *names, const TetcastField *const *fields);
+/* Writes a mesh and its fields as .vtu (appended raw, zlib-compressed). names[i] names fields[i]. The file appears
+ * whole or not at all. Fields must have as many values as the mesh has vertices or cells. count may be 0, names and
+ * fields then NULL. */
+TETCAST_API TetcastStatus tetcast_dataset_write(TetcastContext *context, const char *path, const TetcastMesh *mesh,
+                                                int count, const char *const *names, const TetcastField *const *fields);
 
-/* Reads a closed or open surface of triangles (polygons are cut into them; coincident points merged exactly): .stl (ASCII and binary),
- * .ply, .off, .obj, .vtp and legacy .vtk. Freed with tetcast_surface_release(). */
+/* Reads a closed or open surface of triangles (polygons are cut into them; coincident points merged exactly): .stl
+ * (ASCII and binary), .ply, .off, .obj, .vtp and legacy .vtk. Freed with tetcast_surface_release(). */
 TETCAST_API TetcastStatus tetcast_surface_read(TetcastContext *context, const char *path, TetcastSurface *surface);
 TETCAST_API void tetcast_surface_release(TetcastSurface *surface);
 

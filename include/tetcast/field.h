@@ -15,22 +15,26 @@ extern "C" {
 typedef enum TetcastAssociation {
   TETCAST_POINT = 0, /* one value per vertex, linear (barycentric) in each tetrahedron */
   TETCAST_CELL,      /* one value per tetrahedron, constant in it */
-  TETCAST_CORNER     /* four values per tetrahedron, in the order of its vertices: linear in it, with jumps between tetrahedra */
+  TETCAST_CORNER     /* four values per tetrahedron, in the order of its vertices: linear in it, with jumps between
+                        tetrahedra */
 } TetcastAssociation;
 
-/* One scalar per vertex, per cell or per corner of a cell. NaN and infinite values make the cells they touch transparent. */
+/* One scalar per vertex, per cell or per corner of a cell. NaN and infinite values make the cells they touch
+ * transparent. */
 typedef struct TetcastField TetcastField;
 
 typedef struct TetcastFieldDesc {
   uint32_t cookie;
   TetcastArray values; /* [n] any type; integers beyond 2^53 are rounded to the nearest double */
   TetcastAssociation association;
-  TetcastOwnership ownership; /* a borrowed array may change between calls; what was set from it before keeps its values */
+  TetcastOwnership
+      ownership; /* a borrowed array may change between calls; what was set from it before keeps its values */
 } TetcastFieldDesc;
 
 TETCAST_API TetcastFieldDesc tetcast_field_desc_default(void);
 
-TETCAST_API TetcastStatus tetcast_field_create(TetcastContext *context, const TetcastFieldDesc *desc, TetcastField **field);
+TETCAST_API TetcastStatus tetcast_field_create(TetcastContext *context, const TetcastFieldDesc *desc,
+                                               TetcastField **field);
 
 /* Frees the field and sets *field to NULL. NULL and pointer to NULL do nothing. */
 TETCAST_API void tetcast_field_destroy(TetcastField **field);

@@ -26,8 +26,8 @@ typedef enum TetcastPixelType {
 typedef struct TetcastImageDesc {
   uint32_t cookie;
   TetcastPixelType pixel_type;
-  double background[4]; /* red, green, blue, alpha in [0, 1], not premultiplied: integer pixels are composited over it; floating-point
-                         * pixels hold the frame as it is, premultiplied, without background */
+  double background[4]; /* red, green, blue, alpha in [0, 1], not premultiplied: integer pixels are composited over it;
+                         * floating-point pixels hold the frame as it is, premultiplied, without background */
   int channels_only;    /* not 0: the frame's channels without red, green, blue, alpha; it must have some. Default 0 */
 } TetcastImageDesc;
 
@@ -50,8 +50,8 @@ TETCAST_API TetcastImageDesc tetcast_image_desc_default(void);
 TETCAST_API TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, const TetcastFrame *frame,
                                               const TetcastImageDesc *desc);
 
-/* Whether `path` could be written with `desc` (NULL: default): extension known, pixel type possible, folder there and writable. For a
- * check before long work; the same messages as writing. */
+/* Whether `path` could be written with `desc` (NULL: default): extension known, pixel type possible, folder there and
+ * writable. For a check before long work; the same messages as writing. */
 TETCAST_API TetcastStatus tetcast_image_check(TetcastContext *context, const char *path, const TetcastImageDesc *desc);
 
 #ifdef __cplusplus

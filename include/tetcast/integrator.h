@@ -4,14 +4,16 @@
 
 /* The choices of how light is computed: by which formula, with which instructions. */
 
-/* How the light of a cell's segment is computed. All but the exact one are what others do, there to be compared with: with n
- * samples per segment, splitting at no knots (the table does). Cell fields are constant on a segment and always exact. */
+/* How the light of a cell's segment is computed. All but the exact one are what others do, there to be compared with:
+ * with n samples per segment, splitting at no knots (the table does). Cell fields are constant on a segment and always
+ * exact. */
 typedef enum TetcastIntegrator {
   TETCAST_INTEGRATOR_EXACT = 0, /* the closed form, to rounding */
   TETCAST_INTEGRATOR_MIDPOINT,  /* n ≥ 1 equal steps, each constant as in its middle; error O(1/n²) */
   TETCAST_INTEGRATOR_TRAPEZOID, /* n ≥ 1 equal steps, each with the mean of its ends; O(1/n²) */
-  TETCAST_INTEGRATOR_GAUSS,     /* Gauss–Legendre with n nodes in [1, TETCAST_MAX_GAUSS]; order 2n in the segment's length */
-  TETCAST_INTEGRATOR_TABLE      /* Ψ interpolated in an n × n table, n in [2, 4096]: K. Moreland, E. Angel 2004 */
+  TETCAST_INTEGRATOR_GAUSS, /* Gauss–Legendre with n nodes in [1, TETCAST_MAX_GAUSS]; order 2n in the segment's length
+                             */
+  TETCAST_INTEGRATOR_TABLE  /* Ψ interpolated in an n × n table, n in [2, 4096]: K. Moreland, E. Angel 2004 */
 } TetcastIntegrator;
 
 #define TETCAST_MAX_GAUSS 16

@@ -17,8 +17,9 @@ typedef struct TetcastMesh TetcastMesh;
 
 typedef struct TetcastMeshDesc {
   uint32_t cookie;
-  TetcastArray vertices;   /* [n, 3] float32 or float64, finite, any unit of length */
-  TetcastArray tetrahedra; /* [m, 4] int32, uint32, int64 or uint64, each in [0, n); the order of a cell's vertices is free */
+  TetcastArray vertices; /* [n, 3] float32 or float64, finite, any unit of length */
+  TetcastArray
+      tetrahedra; /* [m, 4] int32, uint32, int64 or uint64, each in [0, n); the order of a cell's vertices is free */
   TetcastOwnership ownership;
 } TetcastMeshDesc;
 
@@ -48,20 +49,23 @@ TETCAST_API void tetcast_mesh_bounds(const TetcastMesh *mesh, double bounds[6]);
 
 /* The health of a mesh. None of these keeps it from being rendered. */
 typedef struct TetcastMeshHealth {
-  int64_t boundary_faces;     /* faces of one cell only */
-  int64_t nonmanifold_faces;  /* faces of three cells or more */
-  int64_t components;         /* sets of cells connected through faces */
-  int64_t degenerate_cells;   /* volume zero as computed in double, or a vertex twice */
-  int64_t inverted_cells;     /* negative volume: (v1 − v0) × (v2 − v0) · (v3 − v0) < 0. Order is free: worth a look only when mixed */
-  int64_t duplicate_cells;    /* cells whose four vertices another cell before them has */
-  int64_t unused_vertices;    /* vertices of no cell */
-  int64_t coincident_vertices;/* used vertices whose coordinates another used vertex before them has: unmerged seams */
-  double volume;              /* sum of the cells' absolute volumes */
-  double boundary_area;       /* area of the faces at which rays enter and leave: boundary and, for each of its cells, non-manifold */
+  int64_t boundary_faces;    /* faces of one cell only */
+  int64_t nonmanifold_faces; /* faces of three cells or more */
+  int64_t components;        /* sets of cells connected through faces */
+  int64_t degenerate_cells;  /* volume zero as computed in double, or a vertex twice */
+  int64_t inverted_cells; /* negative volume: (v1 − v0) × (v2 − v0) · (v3 − v0) < 0. Order is free: worth a look only
+                             when mixed */
+  int64_t duplicate_cells;     /* cells whose four vertices another cell before them has */
+  int64_t unused_vertices;     /* vertices of no cell */
+  int64_t coincident_vertices; /* used vertices whose coordinates another used vertex before them has: unmerged seams */
+  double volume;               /* sum of the cells' absolute volumes */
+  double boundary_area;        /* area of the faces at which rays enter and leave: boundary and, for each of its cells,
+                                  non-manifold */
 } TetcastMeshHealth;
 
 /* Examines the mesh; about as long as preparing a volume of it. */
-TETCAST_API TetcastStatus tetcast_mesh_health(TetcastContext *context, const TetcastMesh *mesh, TetcastMeshHealth *health);
+TETCAST_API TetcastStatus tetcast_mesh_health(TetcastContext *context, const TetcastMesh *mesh,
+                                              TetcastMeshHealth *health);
 
 #ifdef __cplusplus
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Making tetrahedra with TetGen: target tetcast::tetgen, library libtetcast-tetgen. TetGen is licensed under the AGPL, and so is what
- * is linked with this library; libtetcast itself does not use it. */
+/* Making tetrahedra with TetGen: target tetcast::tetgen, library libtetcast-tetgen. TetGen is licensed under the AGPL,
+ * and so is what is linked with this library; libtetcast itself does not use it. */
 #ifndef TETCAST_TETGEN_H
 #define TETCAST_TETGEN_H
 
@@ -17,24 +17,25 @@ extern "C" {
 
 typedef struct TetcastTetgenDesc {
   uint32_t cookie;
-  double quality;    /* ratio of circumradius to shortest edge to stay below, > 1; default 1.4; 0: as the surface's triangles come.
-                      * TetGen aims at it: below 2, a few cells at the surface may exceed it */
+  double quality;    /* ratio of circumradius to shortest edge to stay below, > 1; default 1.4; 0: as the surface's
+                      * triangles come.    TetGen aims at it: below 2, a few cells at the surface may exceed it */
   double max_volume; /* largest volume of a cell in the surface's unit of length cubed; 0: no limit */
 } TetcastTetgenDesc;
 
 TETCAST_API TetcastTetgenDesc tetcast_tetgen_desc_default(void);
 
-/* Fills a closed surface with tetrahedra. TETCAST_ERROR_DATA with a message that says which: open surface, self-intersection,
- * non-finite or coincident input, nothing inside. Not to be called from two threads at a time: TetGen has global state, and while it
- * runs standard output goes to /dev/null, because it prints even when told not to. Some assertions inside TetGen end the process;
- * a program that must survive any surface makes the mesh in a process of its own, as the command does. */
-TETCAST_API TetcastStatus tetcast_tetgen_mesh(TetcastContext *context, const TetcastSurface *surface, const TetcastTetgenDesc *desc,
-                                              TetcastMesh **mesh);
+/* Fills a closed surface with tetrahedra. TETCAST_ERROR_DATA with a message that says which: open surface,
+ * self-intersection, non-finite or coincident input, nothing inside. Not to be called from two threads at a time:
+ * TetGen has global state, and while it runs standard output goes to /dev/null, because it prints even when told not
+ * to. Some assertions inside TetGen end the process; a program that must survive any surface makes the mesh in a
+ * process of its own, as the command does. */
+TETCAST_API TetcastStatus tetcast_tetgen_mesh(TetcastContext *context, const TetcastSurface *surface,
+                                              const TetcastTetgenDesc *desc, TetcastMesh **mesh);
 
-/* The same from a file in one of TetGen's own formats: .poly, .smesh (with holes and facets of any number of corners), or .node/.ele
- * (a mesh that TetGen made: read as it is). */
-TETCAST_API TetcastStatus tetcast_tetgen_mesh_file(TetcastContext *context, const char *path, const TetcastTetgenDesc *desc,
-                                                   TetcastMesh **mesh);
+/* The same from a file in one of TetGen's own formats: .poly, .smesh (with holes and facets of any number of corners),
+ * or .node/.ele (a mesh that TetGen made: read as it is). */
+TETCAST_API TetcastStatus tetcast_tetgen_mesh_file(TetcastContext *context, const char *path,
+                                                   const TetcastTetgenDesc *desc, TetcastMesh **mesh);
 
 #ifdef __cplusplus
 }

@@ -19,8 +19,8 @@ typedef struct TetcastVolume TetcastVolume;
 
 typedef enum TetcastTraversal {
   TETCAST_TRAVERSAL_SHELL = 0, /* Embree holds the boundary; inside, rays walk from cell to cell through shared faces */
-  TETCAST_TRAVERSAL_FACES      /* Embree holds every cell, whose four faces are tested one by one and the crossings sorted: slow,
-                                * needs no adjacency, for meshes whose parts overlap and for checking the walk */
+  TETCAST_TRAVERSAL_FACES /* Embree holds every cell, whose four faces are tested one by one and the crossings sorted:
+                           * slow, needs no adjacency, for meshes whose parts overlap and for checking the walk */
 } TetcastTraversal;
 
 typedef struct TetcastVolumeDesc {
@@ -50,21 +50,21 @@ TETCAST_API TetcastVolumeDesc tetcast_volume_desc_default(void);
  * a cell has two of them. So files in which each
  * cell brings its own points have no gaps. Values stay each vertex's own: a point field may jump between such cells.
  * This costs memory, 16 bytes for each tetrahedron, and time only where there are such vertices. */
-TETCAST_API TetcastStatus tetcast_volume_create(TetcastContext *context, const TetcastMesh *mesh, const TetcastVolumeDesc *desc,
-                                                TetcastVolume **volume);
+TETCAST_API TetcastStatus tetcast_volume_create(TetcastContext *context, const TetcastMesh *mesh,
+                                                const TetcastVolumeDesc *desc, TetcastVolume **volume);
 
 /* Frees the volume and sets *volume to NULL. NULL and pointer to NULL do nothing. Scenes of it must be gone. */
 TETCAST_API void tetcast_volume_destroy(TetcastVolume **volume);
 
 typedef struct TetcastVolumeInfo {
-  int64_t vertices;        /* of the mesh */
-  int64_t tetrahedra;      /* that can be crossed: the mesh's less those left out */
-  int64_t left_out;        /* cells left out, see tetcast_volume_create() */
-  int64_t welded;          /* vertices that lie where another one does, see tetcast_volume_create() */
-  int64_t shell_faces;     /* faces (shell) or cells (faces) that Embree holds */
-  size_t bytes;            /* resident memory: arrays of the volume and what Embree holds for it */
-  double bounds[6];        /* of its cells: xmin, xmax, ymin, ymax, zmin, zmax */
-  double boundary_area;    /* area of the faces at which rays enter and leave */
+  int64_t vertices;     /* of the mesh */
+  int64_t tetrahedra;   /* that can be crossed: the mesh's less those left out */
+  int64_t left_out;     /* cells left out, see tetcast_volume_create() */
+  int64_t welded;       /* vertices that lie where another one does, see tetcast_volume_create() */
+  int64_t shell_faces;  /* faces (shell) or cells (faces) that Embree holds */
+  size_t bytes;         /* resident memory: arrays of the volume and what Embree holds for it */
+  double bounds[6];     /* of its cells: xmin, xmax, ymin, ymax, zmin, zmax */
+  double boundary_area; /* area of the faces at which rays enter and leave */
   TetcastTraversal traversal;
 } TetcastVolumeInfo;
 

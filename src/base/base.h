@@ -59,7 +59,7 @@ double tc_array_double(const TetcastArray *array, int64_t stride, int64_t i, int
 int64_t tc_array_int64(const TetcastArray *array, int64_t stride, int64_t i, int component); /* integer types only */
 
 /* Keeps `source` as `ownership` says: *view refers to it, or to a packed copy in *memory (NULL when borrowed). */
-TetcastStatus tc_array_keep(TetcastContext *context, const TetcastArray *source, int components, TetcastOwnership ownership,
-                            const char *what, TetcastArray *view, void **memory);
+TetcastStatus tc_array_keep(TetcastContext *context, const TetcastArray *source, int components,
+                            TetcastOwnership ownership, const char *what, TetcastArray *view, void **memory);
 
 #endif

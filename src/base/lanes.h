@@ -2,7 +2,8 @@
 /* Vectors of numbers, a ray in each lane. What is written with them is compiled several times: the build defines
  *     TC_LANES    how many: 1 (no vectors: a lane is a plain number), 4 or 8 doubles, 8 or 16 floats
  *     TC_SINGLE   0 for double, 1 for single precision
- * Arithmetic is written with operators. What needs an instruction of its own is below, and in one file for each instruction set. */
+ * Arithmetic is written with operators. What needs an instruction of its own is below, and in one file for each
+ * instruction set. */
 #ifndef TC_BASE_LANES_H
 #define TC_BASE_LANES_H
 
@@ -16,9 +17,9 @@
 #error "TC_LANES and TC_SINGLE say what lanes there are"
 #endif
 
-#define TC_INLINE static inline __attribute__((always_inline))
-#define TC_NOINLINE static __attribute__((noinline))
-#define TC_LIKELY(x) __builtin_expect(!!(x), 1)
+#define TC_INLINE      static inline __attribute__((always_inline))
+#define TC_NOINLINE    static __attribute__((noinline))
+#define TC_LIKELY(x)   __builtin_expect(!!(x), 1)
 #define TC_UNLIKELY(x) __builtin_expect(!!(x), 0)
 
 /* Before a loop over lanes or packets, whose instructions then mix. */
@@ -65,10 +66,18 @@ enum { TC_ALL_LANES = (1 << TC_LANES) - 1 };
 /* Four numbers next to each other in memory: a vertex, a quarter of a row. */
 typedef TcReal TcRecord __attribute__((vector_size(4 * sizeof(TcReal))));
 
-TC_INLINE TcVec tc_set(TcReal x) { return x - (TcVec){0}; }
-TC_INLINE TcInt tc_set_int(TcInteger x) { return x - (TcInt){0}; }
-TC_INLINE TcWide tc_set_wide(double x) { return x - (TcWide){0}; }
-TC_INLINE TcWord tc_set_word(uint32_t x) { return x - (TcWord){0}; }
+TC_INLINE TcVec tc_set(TcReal x) {
+  return x - (TcVec){0};
+}
+TC_INLINE TcInt tc_set_int(TcInteger x) {
+  return x - (TcInt){0};
+}
+TC_INLINE TcWide tc_set_wide(double x) {
+  return x - (TcWide){0};
+}
+TC_INLINE TcWord tc_set_word(uint32_t x) {
+  return x - (TcWord){0};
+}
 TC_INLINE TcVec tc_load(const TcReal *from) {
   TcVec v;
   memcpy(&v, from, sizeof v);
@@ -79,11 +88,15 @@ TC_INLINE TcWord tc_load_word(const uint32_t *from) {
   memcpy(&v, from, sizeof v);
   return v;
 }
-TC_INLINE void tc_store(TcReal *to, TcVec v) { memcpy(to, &v, sizeof v); }
-TC_INLINE void tc_store_word(uint32_t *to, TcWord v) { memcpy(to, &v, sizeof v); }
+TC_INLINE void tc_store(TcReal *to, TcVec v) {
+  memcpy(to, &v, sizeof v);
+}
+TC_INLINE void tc_store_word(uint32_t *to, TcWord v) {
+  memcpy(to, &v, sizeof v);
+}
 
-/* Keeps the compiler from knowing what is in an array that was stored as a vector and is read lane by lane, which it would else replace by
- * extracting lanes. */
+/* Keeps the compiler from knowing what is in an array that was stored as a vector and is read lane by lane, which it
+ * would else replace by extracting lanes. */
 #define TC_IN_MEMORY(array) __asm__ volatile("" : "+m"(array))
 
 #if TC_LANES == 1
@@ -97,20 +110,29 @@ TC_INLINE void tc_store_word(uint32_t *to, TcWord v) { memcpy(to, &v, sizeof v);
 
 /* ── what follows from these ── */
 
-TC_INLINE TcMask tc_all(void) { return tc_mask_of(TC_ALL_LANES); }
-TC_INLINE TcMask tc_none(void) { return tc_mask_of(0); }
-TC_INLINE TcMask tc_gt(TcVec a, TcVec b) { return tc_lt(b, a); }
+TC_INLINE TcMask tc_all(void) {
+  return tc_mask_of(TC_ALL_LANES);
+}
+TC_INLINE TcMask tc_none(void) {
+  return tc_mask_of(0);
+}
+TC_INLINE TcMask tc_gt(TcVec a, TcVec b) {
+  return tc_lt(b, a);
+}
 TC_INLINE unsigned tc_wide_le(TcWide a, TcWide b) { /* bits of lanes */
   unsigned bits = 0;
 #if TC_LANES == 1
   bits = a <= b;
 #elif defined(__AVX512F__)
   for (int i = 0; i < TC_LANES / 8; ++i) {
-    bits |= (unsigned)_mm512_cmp_pd_mask(_mm512_loadu_pd((const double *)&a + 8 * i), _mm512_loadu_pd((const double *)&b + 8 * i), _CMP_LE_OQ) << 8 * i;
+    bits |= (unsigned)_mm512_cmp_pd_mask(_mm512_loadu_pd((const double *)&a + 8 * i),
+                                         _mm512_loadu_pd((const double *)&b + 8 * i), _CMP_LE_OQ)
+            << 8 * i;
   }
 #else
   for (int i = 0; i < TC_LANES / 4; ++i) {
-    const __m256d less = _mm256_cmp_pd(_mm256_loadu_pd((const double *)&a + 4 * i), _mm256_loadu_pd((const double *)&b + 4 * i), _CMP_LE_OQ);
+    const __m256d less = _mm256_cmp_pd(_mm256_loadu_pd((const double *)&a + 4 * i),
+                                       _mm256_loadu_pd((const double *)&b + 4 * i), _CMP_LE_OQ);
     bits |= (unsigned)_mm256_movemask_pd(less) << 4 * i;
   }
 #endif
@@ -121,7 +143,8 @@ TC_INLINE TcWide tc_sqrt_wide(TcWide a) {
   return sqrt(a);
 #else
   TcWide root;
-  for (int i = 0; i < TC_LANES / 4; ++i) _mm256_storeu_pd((double *)&root + 4 * i, _mm256_sqrt_pd(_mm256_loadu_pd((const double *)&a + 4 * i)));
+  for (int i = 0; i < TC_LANES / 4; ++i)
+    _mm256_storeu_pd((double *)&root + 4 * i, _mm256_sqrt_pd(_mm256_loadu_pd((const double *)&a + 4 * i)));
   return root;
 #endif
 }
@@ -132,13 +155,18 @@ TC_INLINE TcVec tc_real_of_wide(TcWide a) {
   return __builtin_convertvector(a, TcVec);
 #endif
 }
-TC_INLINE bool tc_any(TcMask m) { return tc_bits(m) != 0; }
-TC_INLINE TcVec tc_select3(TcMask m, TcVec a, TcMask n, TcVec b, TcVec c) { return tc_select(m, a, tc_select(n, b, c)); }
+TC_INLINE bool tc_any(TcMask m) {
+  return tc_bits(m) != 0;
+}
+TC_INLINE TcVec tc_select3(TcMask m, TcVec a, TcMask n, TcVec b, TcVec c) {
+  return tc_select(m, a, tc_select(n, b, c));
+}
 
 /* Σ c[i] xⁱ, i < n, by Horner; unrolled where n and c are constants. */
 TC_INLINE TcVec tc_polynomial(TcVec x, const double *c, int n) {
   TcVec sum = tc_set((TcReal)c[n - 1]);
-  for (int i = n - 2; i >= 0; --i) sum = tc_madd(sum, x, tc_set((TcReal)c[i]));
+  for (int i = n - 2; i >= 0; --i)
+    sum = tc_madd(sum, x, tc_set((TcReal)c[i]));
   return sum;
 }
 
@@ -150,13 +178,16 @@ TC_INLINE TcInt tc_nearest(TcVec a, TcVec *whole) {
 }
 
 /* 2ⁿ for n in [−1022, 1023] (single precision: [−126, 127]). */
-TC_INLINE TcVec tc_power_of_two(TcInt n) { return tc_of_bits(TC_SINGLE ? (n + 127) << 23 : (n + 1023) << (TC_SINGLE ? 0 : 52)); }
+TC_INLINE TcVec tc_power_of_two(TcInt n) {
+  return tc_of_bits(TC_SINGLE ? (n + 127) << 23 : (n + 1023) << (TC_SINGLE ? 0 : 52));
+}
 
-/* e^x for x ≤ 0 to 1.5 ulp, gradually to 0 below −708 (single precision: −87): e^r 2ⁿ with |r| ≤ ln 2 / 2, by Taylor's series up to r¹³, what is
- * left out being below 2⁻⁵⁷, or up to r⁷, below 2⁻²⁷. */
+/* e^x for x ≤ 0 to 1.5 ulp, gradually to 0 below −708 (single precision: −87): e^r 2ⁿ with |r| ≤ ln 2 / 2, by Taylor's
+ * series up to r¹³, what is left out being below 2⁻⁵⁷, or up to r⁷, below 2⁻²⁷. */
 TC_INLINE TcVec tc_exp(TcVec x) {
-  static const double c[] = {1,         1,          1. / 2,      1. / 6,       1. / 24,       1. / 120,       1. / 720,
-                             1. / 5040, 1. / 40320, 1. / 362880, 1. / 3628800, 1. / 39916800, 1. / 479001600, 1. / 6227020800};
+  static const double c[] = {
+      1,         1,          1. / 2,      1. / 6,       1. / 24,       1. / 120,       1. / 720,
+      1. / 5040, 1. / 40320, 1. / 362880, 1. / 3628800, 1. / 39916800, 1. / 479001600, 1. / 6227020800};
   x = tc_max(x, tc_set(TC_SINGLE ? -170 : -1400)); /* where both powers of two are in range, and their product is not */
   TcVec n, half_n;
   const TcInt whole = tc_nearest(x * (TcReal)0x1.71547652b82fep0, &n), half = tc_nearest((TcReal)0.5 * n, &half_n);

@@ -21,17 +21,39 @@ TC_INLINE TcMask tc_mask_of(unsigned bits) {
 #endif
   return ((TcInteger)bits & bit) == bit;
 }
-TC_INLINE unsigned tc_bits(TcMask m) { return (unsigned)TC_PS(movemask, TC_R(m)); }
-TC_INLINE TcMask tc_lt(TcVec a, TcVec b) { return (TcMask)TC_PS(cmp, TC_R(a), TC_R(b), _CMP_LT_OQ); }
-TC_INLINE TcMask tc_le(TcVec a, TcVec b) { return (TcMask)TC_PS(cmp, TC_R(a), TC_R(b), _CMP_LE_OQ); }
-TC_INLINE TcMask tc_eq(TcVec a, TcVec b) { return (TcMask)TC_PS(cmp, TC_R(a), TC_R(b), _CMP_EQ_OQ); }
-TC_INLINE TcMask tc_eq_int(TcInt a, TcInt b) { return a == b; }
-TC_INLINE TcMask tc_negative(TcVec a) { return (TcInt)a < 0; }
-TC_INLINE TcMask tc_and(TcMask a, TcMask b) { return a & b; }
-TC_INLINE TcMask tc_or(TcMask a, TcMask b) { return a | b; }
-TC_INLINE TcMask tc_and_not(TcMask a, TcMask b) { return a & ~b; }
-TC_INLINE TcVec tc_select(TcMask m, TcVec a, TcVec b) { return (TcVec)TC_PS(blendv, TC_R(b), TC_R(a), TC_R(m)); }
-TC_INLINE TcInt tc_select_int(TcMask m, TcInt a, TcInt b) { return (TcInt)tc_select(m, (TcVec)a, (TcVec)b); }
+TC_INLINE unsigned tc_bits(TcMask m) {
+  return (unsigned)TC_PS(movemask, TC_R(m));
+}
+TC_INLINE TcMask tc_lt(TcVec a, TcVec b) {
+  return (TcMask)TC_PS(cmp, TC_R(a), TC_R(b), _CMP_LT_OQ);
+}
+TC_INLINE TcMask tc_le(TcVec a, TcVec b) {
+  return (TcMask)TC_PS(cmp, TC_R(a), TC_R(b), _CMP_LE_OQ);
+}
+TC_INLINE TcMask tc_eq(TcVec a, TcVec b) {
+  return (TcMask)TC_PS(cmp, TC_R(a), TC_R(b), _CMP_EQ_OQ);
+}
+TC_INLINE TcMask tc_eq_int(TcInt a, TcInt b) {
+  return a == b;
+}
+TC_INLINE TcMask tc_negative(TcVec a) {
+  return (TcInt)a < 0;
+}
+TC_INLINE TcMask tc_and(TcMask a, TcMask b) {
+  return a & b;
+}
+TC_INLINE TcMask tc_or(TcMask a, TcMask b) {
+  return a | b;
+}
+TC_INLINE TcMask tc_and_not(TcMask a, TcMask b) {
+  return a & ~b;
+}
+TC_INLINE TcVec tc_select(TcMask m, TcVec a, TcVec b) {
+  return (TcVec)TC_PS(blendv, TC_R(b), TC_R(a), TC_R(m));
+}
+TC_INLINE TcInt tc_select_int(TcMask m, TcInt a, TcInt b) {
+  return (TcInt)tc_select(m, (TcVec)a, (TcVec)b);
+}
 TC_INLINE TcWord tc_select_word(TcMask m, TcWord a, TcWord b) {
 #if TC_SINGLE
   return (TcWord)_mm256_blendv_ps((__m256)b, (__m256)a, (__m256)m);
@@ -40,15 +62,33 @@ TC_INLINE TcWord tc_select_word(TcMask m, TcWord a, TcWord b) {
   return (TcWord)_mm_blendv_ps((__m128)b, (__m128)a, _mm_shuffle_ps(low, high, 0x88));
 #endif
 }
-TC_INLINE TcVec tc_madd(TcVec a, TcVec b, TcVec c) { return (TcVec)TC_PS(fmadd, TC_R(a), TC_R(b), TC_R(c)); }
-TC_INLINE TcVec tc_msub(TcVec a, TcVec b, TcVec c) { return (TcVec)TC_PS(fmsub, TC_R(a), TC_R(b), TC_R(c)); }
-TC_INLINE TcInt tc_bits_of(TcVec a) { return (TcInt)a; }
-TC_INLINE TcVec tc_of_bits(TcInt n) { return (TcVec)n; }
-TC_INLINE TcVec tc_abs(TcVec a) { return (TcVec)((TcInt)a & (TC_SINGLE ? INT32_MAX : INT64_MAX)); }
-TC_INLINE TcVec tc_min(TcVec a, TcVec b) { return (TcVec)TC_PS(min, TC_R(a), TC_R(b)); } /* b if one is NaN */
-TC_INLINE TcVec tc_max(TcVec a, TcVec b) { return (TcVec)TC_PS(max, TC_R(a), TC_R(b)); }
-TC_INLINE TcVec tc_sqrt(TcVec a) { return (TcVec)TC_PS(sqrt, TC_R(a)); }
-TC_INLINE TcVec tc_to_real(TcInt a) { return __builtin_convertvector(a, TcVec); }
+TC_INLINE TcVec tc_madd(TcVec a, TcVec b, TcVec c) {
+  return (TcVec)TC_PS(fmadd, TC_R(a), TC_R(b), TC_R(c));
+}
+TC_INLINE TcVec tc_msub(TcVec a, TcVec b, TcVec c) {
+  return (TcVec)TC_PS(fmsub, TC_R(a), TC_R(b), TC_R(c));
+}
+TC_INLINE TcInt tc_bits_of(TcVec a) {
+  return (TcInt)a;
+}
+TC_INLINE TcVec tc_of_bits(TcInt n) {
+  return (TcVec)n;
+}
+TC_INLINE TcVec tc_abs(TcVec a) {
+  return (TcVec)((TcInt)a & (TC_SINGLE ? INT32_MAX : INT64_MAX));
+}
+TC_INLINE TcVec tc_min(TcVec a, TcVec b) {
+  return (TcVec)TC_PS(min, TC_R(a), TC_R(b));
+} /* b if one is NaN */
+TC_INLINE TcVec tc_max(TcVec a, TcVec b) {
+  return (TcVec)TC_PS(max, TC_R(a), TC_R(b));
+}
+TC_INLINE TcVec tc_sqrt(TcVec a) {
+  return (TcVec)TC_PS(sqrt, TC_R(a));
+}
+TC_INLINE TcVec tc_to_real(TcInt a) {
+  return __builtin_convertvector(a, TcVec);
+}
 
 /* How many of a, b, c, d are less than x; all are below 2³¹. */
 TC_INLINE TcWord tc_rank(TcWord x, TcWord a, TcWord b, TcWord c, TcWord d) {
@@ -69,11 +109,13 @@ TC_INLINE TcMask tc_high_bit(TcWord a) {
 #endif
 }
 
-/* The four numbers at each lane's address become four vectors: loads and shuffles, as gather instructions take longer. */
+/* The four numbers at each lane's address become four vectors: loads and shuffles, as gather instructions take longer.
+ */
 TC_INLINE void tc_load_records(const TcReal *const at[TC_LANES], TcVec component[4]) {
 #if TC_SINGLE
   __m256 r[4]; /* lanes j and j + 4: a 4 × 4 transpose in each half */
-  for (int j = 0; j < 4; ++j) r[j] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(at[j])), _mm_loadu_ps(at[j + 4]), 1);
+  for (int j = 0; j < 4; ++j)
+    r[j] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(at[j])), _mm_loadu_ps(at[j + 4]), 1);
   const __m256d a = (__m256d)_mm256_unpacklo_ps(r[0], r[1]), b = (__m256d)_mm256_unpackhi_ps(r[0], r[1]);
   const __m256d c = (__m256d)_mm256_unpacklo_ps(r[2], r[3]), d = (__m256d)_mm256_unpackhi_ps(r[2], r[3]);
   component[0] = (TcVec)_mm256_unpacklo_pd(a, c);
@@ -94,8 +136,8 @@ TC_INLINE void tc_load_records(const TcReal *const at[TC_LANES], TcVec component
 #endif
 }
 
-/* a d − b c by Kahan's difference of products (Jeannerod, Louvet, Muller, 2013): to a relative error of two units in the last place, so with the exact
- * sign, or zero, as long as nothing underflows. */
+/* a d − b c by Kahan's difference of products (Jeannerod, Louvet, Muller, 2013): to a relative error of two units in
+ * the last place, so with the exact sign, or zero, as long as nothing underflows. */
 TC_INLINE TcVec tc_determinant(TcVec a, TcVec b, TcVec c, TcVec d) {
   const TcVec q = b * c;
   return tc_msub(a, d, q) - tc_msub(b, c, q);

@@ -14,32 +14,80 @@ typedef __m512d TcRegister;
 #endif
 #define TC_R(vector) ((TcRegister)(vector))
 
-TC_INLINE TcMask tc_mask_of(unsigned bits) { return (TcMask)bits; }
-TC_INLINE unsigned tc_bits(TcMask m) { return m; }
+TC_INLINE TcMask tc_mask_of(unsigned bits) {
+  return (TcMask)bits;
+}
+TC_INLINE unsigned tc_bits(TcMask m) {
+  return m;
+}
 #if TC_SINGLE
-TC_INLINE TcMask tc_lt(TcVec a, TcVec b) { return _mm512_cmp_ps_mask(TC_R(a), TC_R(b), _CMP_LT_OQ); }
-TC_INLINE TcMask tc_le(TcVec a, TcVec b) { return _mm512_cmp_ps_mask(TC_R(a), TC_R(b), _CMP_LE_OQ); }
-TC_INLINE TcMask tc_eq(TcVec a, TcVec b) { return _mm512_cmp_ps_mask(TC_R(a), TC_R(b), _CMP_EQ_OQ); }
-TC_INLINE TcMask tc_eq_int(TcInt a, TcInt b) { return _mm512_cmpeq_epi32_mask((__m512i)a, (__m512i)b); }
-TC_INLINE TcMask tc_negative(TcVec a) { return _mm512_movepi32_mask((__m512i)a); }
-TC_INLINE TcMask tc_and(TcMask a, TcMask b) { return (TcMask)(a & b); }
-TC_INLINE TcMask tc_or(TcMask a, TcMask b) { return (TcMask)(a | b); }
-TC_INLINE TcMask tc_and_not(TcMask a, TcMask b) { return (TcMask)(a & ~b); }
-TC_INLINE TcWord tc_select_word(TcMask m, TcWord a, TcWord b) { return (TcWord)_mm512_mask_blend_epi32(m, (__m512i)b, (__m512i)a); }
-TC_INLINE TcVec tc_madd(TcVec a, TcVec b, TcVec c) { return (TcVec)_mm512_fmadd_ps(TC_R(a), TC_R(b), TC_R(c)); }
-TC_INLINE TcVec tc_msub(TcVec a, TcVec b, TcVec c) { return (TcVec)_mm512_fmsub_ps(TC_R(a), TC_R(b), TC_R(c)); }
+TC_INLINE TcMask tc_lt(TcVec a, TcVec b) {
+  return _mm512_cmp_ps_mask(TC_R(a), TC_R(b), _CMP_LT_OQ);
+}
+TC_INLINE TcMask tc_le(TcVec a, TcVec b) {
+  return _mm512_cmp_ps_mask(TC_R(a), TC_R(b), _CMP_LE_OQ);
+}
+TC_INLINE TcMask tc_eq(TcVec a, TcVec b) {
+  return _mm512_cmp_ps_mask(TC_R(a), TC_R(b), _CMP_EQ_OQ);
+}
+TC_INLINE TcMask tc_eq_int(TcInt a, TcInt b) {
+  return _mm512_cmpeq_epi32_mask((__m512i)a, (__m512i)b);
+}
+TC_INLINE TcMask tc_negative(TcVec a) {
+  return _mm512_movepi32_mask((__m512i)a);
+}
+TC_INLINE TcMask tc_and(TcMask a, TcMask b) {
+  return (TcMask)(a & b);
+}
+TC_INLINE TcMask tc_or(TcMask a, TcMask b) {
+  return (TcMask)(a | b);
+}
+TC_INLINE TcMask tc_and_not(TcMask a, TcMask b) {
+  return (TcMask)(a & ~b);
+}
+TC_INLINE TcWord tc_select_word(TcMask m, TcWord a, TcWord b) {
+  return (TcWord)_mm512_mask_blend_epi32(m, (__m512i)b, (__m512i)a);
+}
+TC_INLINE TcVec tc_madd(TcVec a, TcVec b, TcVec c) {
+  return (TcVec)_mm512_fmadd_ps(TC_R(a), TC_R(b), TC_R(c));
+}
+TC_INLINE TcVec tc_msub(TcVec a, TcVec b, TcVec c) {
+  return (TcVec)_mm512_fmsub_ps(TC_R(a), TC_R(b), TC_R(c));
+}
 #else
-TC_INLINE TcMask tc_lt(TcVec a, TcVec b) { return _mm512_cmp_pd_mask(TC_R(a), TC_R(b), _CMP_LT_OQ); }
-TC_INLINE TcMask tc_le(TcVec a, TcVec b) { return _mm512_cmp_pd_mask(TC_R(a), TC_R(b), _CMP_LE_OQ); }
-TC_INLINE TcMask tc_eq(TcVec a, TcVec b) { return _mm512_cmp_pd_mask(TC_R(a), TC_R(b), _CMP_EQ_OQ); }
-TC_INLINE TcMask tc_eq_int(TcInt a, TcInt b) { return _mm512_cmpeq_epi64_mask((__m512i)a, (__m512i)b); }
-TC_INLINE TcMask tc_negative(TcVec a) { return _mm512_movepi64_mask((__m512i)a); }
-TC_INLINE TcMask tc_and(TcMask a, TcMask b) { return (TcMask)(a & b); }
-TC_INLINE TcMask tc_or(TcMask a, TcMask b) { return (TcMask)(a | b); }
-TC_INLINE TcMask tc_and_not(TcMask a, TcMask b) { return (TcMask)(a & ~b); }
-TC_INLINE TcWord tc_select_word(TcMask m, TcWord a, TcWord b) { return (TcWord)_mm256_mask_blend_epi32(m, (__m256i)b, (__m256i)a); }
-TC_INLINE TcVec tc_madd(TcVec a, TcVec b, TcVec c) { return (TcVec)_mm512_fmadd_pd(TC_R(a), TC_R(b), TC_R(c)); }
-TC_INLINE TcVec tc_msub(TcVec a, TcVec b, TcVec c) { return (TcVec)_mm512_fmsub_pd(TC_R(a), TC_R(b), TC_R(c)); }
+TC_INLINE TcMask tc_lt(TcVec a, TcVec b) {
+  return _mm512_cmp_pd_mask(TC_R(a), TC_R(b), _CMP_LT_OQ);
+}
+TC_INLINE TcMask tc_le(TcVec a, TcVec b) {
+  return _mm512_cmp_pd_mask(TC_R(a), TC_R(b), _CMP_LE_OQ);
+}
+TC_INLINE TcMask tc_eq(TcVec a, TcVec b) {
+  return _mm512_cmp_pd_mask(TC_R(a), TC_R(b), _CMP_EQ_OQ);
+}
+TC_INLINE TcMask tc_eq_int(TcInt a, TcInt b) {
+  return _mm512_cmpeq_epi64_mask((__m512i)a, (__m512i)b);
+}
+TC_INLINE TcMask tc_negative(TcVec a) {
+  return _mm512_movepi64_mask((__m512i)a);
+}
+TC_INLINE TcMask tc_and(TcMask a, TcMask b) {
+  return (TcMask)(a & b);
+}
+TC_INLINE TcMask tc_or(TcMask a, TcMask b) {
+  return (TcMask)(a | b);
+}
+TC_INLINE TcMask tc_and_not(TcMask a, TcMask b) {
+  return (TcMask)(a & ~b);
+}
+TC_INLINE TcWord tc_select_word(TcMask m, TcWord a, TcWord b) {
+  return (TcWord)_mm256_mask_blend_epi32(m, (__m256i)b, (__m256i)a);
+}
+TC_INLINE TcVec tc_madd(TcVec a, TcVec b, TcVec c) {
+  return (TcVec)_mm512_fmadd_pd(TC_R(a), TC_R(b), TC_R(c));
+}
+TC_INLINE TcVec tc_msub(TcVec a, TcVec b, TcVec c) {
+  return (TcVec)_mm512_fmsub_pd(TC_R(a), TC_R(b), TC_R(c));
+}
 #endif
 
 TC_INLINE TcVec tc_select(TcMask m, TcVec a, TcVec b) {
@@ -48,14 +96,30 @@ TC_INLINE TcVec tc_select(TcMask m, TcVec a, TcVec b) {
   __asm__("" : "+v"(result));
   return result;
 }
-TC_INLINE TcInt tc_bits_of(TcVec a) { return (TcInt)a; }
-TC_INLINE TcVec tc_of_bits(TcInt n) { return (TcVec)n; }
-TC_INLINE TcInt tc_select_int(TcMask m, TcInt a, TcInt b) { return (TcInt)tc_select(m, (TcVec)a, (TcVec)b); }
-TC_INLINE TcVec tc_abs(TcVec a) { return (TcVec)TC_PS(abs, TC_R(a)); }
-TC_INLINE TcVec tc_min(TcVec a, TcVec b) { return (TcVec)TC_PS(min, TC_R(a), TC_R(b)); } /* b if one is NaN */
-TC_INLINE TcVec tc_max(TcVec a, TcVec b) { return (TcVec)TC_PS(max, TC_R(a), TC_R(b)); }
-TC_INLINE TcVec tc_sqrt(TcVec a) { return (TcVec)TC_PS(sqrt, TC_R(a)); }
-TC_INLINE TcVec tc_to_real(TcInt a) { return __builtin_convertvector(a, TcVec); }
+TC_INLINE TcInt tc_bits_of(TcVec a) {
+  return (TcInt)a;
+}
+TC_INLINE TcVec tc_of_bits(TcInt n) {
+  return (TcVec)n;
+}
+TC_INLINE TcInt tc_select_int(TcMask m, TcInt a, TcInt b) {
+  return (TcInt)tc_select(m, (TcVec)a, (TcVec)b);
+}
+TC_INLINE TcVec tc_abs(TcVec a) {
+  return (TcVec)TC_PS(abs, TC_R(a));
+}
+TC_INLINE TcVec tc_min(TcVec a, TcVec b) {
+  return (TcVec)TC_PS(min, TC_R(a), TC_R(b));
+} /* b if one is NaN */
+TC_INLINE TcVec tc_max(TcVec a, TcVec b) {
+  return (TcVec)TC_PS(max, TC_R(a), TC_R(b));
+}
+TC_INLINE TcVec tc_sqrt(TcVec a) {
+  return (TcVec)TC_PS(sqrt, TC_R(a));
+}
+TC_INLINE TcVec tc_to_real(TcInt a) {
+  return __builtin_convertvector(a, TcVec);
+}
 
 /* How many of a, b, c, d are less than x; all are below 2³¹. */
 TC_INLINE TcWord tc_rank(TcWord x, TcWord a, TcWord b, TcWord c, TcWord d) {
@@ -80,7 +144,8 @@ TC_INLINE TcMask tc_high_bit(TcWord a) {
 #endif
 }
 
-/* The four numbers at each lane's address become four vectors: loads and shuffles, as gather instructions take longer. */
+/* The four numbers at each lane's address become four vectors: loads and shuffles, as gather instructions take longer.
+ */
 TC_INLINE void tc_load_records(const TcReal *const at[TC_LANES], TcVec component[4]) {
 #if TC_SINGLE
   __m512 r[4]; /* lanes j, j + 4, j + 8, j + 12: a 4 × 4 transpose in each quarter */
@@ -103,7 +168,8 @@ TC_INLINE void tc_load_records(const TcReal *const at[TC_LANES], TcVec component
   }
   const __m512d a = _mm512_unpacklo_pd(r[0], r[1]), b = _mm512_unpackhi_pd(r[0], r[1]);
   const __m512d c = _mm512_unpacklo_pd(r[2], r[3]), d = _mm512_unpackhi_pd(r[2], r[3]);
-  const __m512i front = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13), back = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+  const __m512i front = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13),
+                back = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
   component[0] = (TcVec)_mm512_permutex2var_pd(a, front, c);
   component[1] = (TcVec)_mm512_permutex2var_pd(b, front, d);
   component[2] = (TcVec)_mm512_permutex2var_pd(a, back, c);
@@ -111,8 +177,8 @@ TC_INLINE void tc_load_records(const TcReal *const at[TC_LANES], TcVec component
 #endif
 }
 
-/* a d − b c by Kahan's difference of products (Jeannerod, Louvet, Muller, 2013): to a relative error of two units in the last place, so with the exact
- * sign, or zero, as long as nothing underflows. */
+/* a d − b c by Kahan's difference of products (Jeannerod, Louvet, Muller, 2013): to a relative error of two units in
+ * the last place, so with the exact sign, or zero, as long as nothing underflows. */
 TC_INLINE TcVec tc_determinant(TcVec a, TcVec b, TcVec c, TcVec d) {
   const TcVec q = b * c;
   return tc_msub(a, d, q) - tc_msub(b, c, q);

@@ -5,11 +5,13 @@
 #include "base/call.h"
 
 void tc_message_v(TetcastContext *context, TetcastSeverity severity, const char *format, va_list arguments) {
-  if (!context || !context->message) return;
+  if (!context || !context->message)
+    return;
   char text[1024]; /* no allocation: the message may be about one that failed */
   vsnprintf(text, sizeof text, format, arguments);
   for (char *c = text; *c; ++c) {
-    if (*c == '\n' || *c == '\r') *c = ' '; /* one line, whatever a file's name or another library's words hold */
+    if (*c == '\n' || *c == '\r')
+      *c = ' '; /* one line, whatever a file's name or another library's words hold */
   }
   tc_call_message(context, severity, text);
 }

@@ -3,8 +3,9 @@
 
 #include "base/call.h"
 
-/* Threads live for one loop: starting one costs some 20 µs, loops worth splitting take far longer, and a host application
- * finds no threads of ours between calls. (libgomp would end the process where a thread can't be started.) */
+/* Threads live for one loop: starting one costs some 20 µs, loops worth splitting take far longer, and a host
+ * application finds no threads of ours between calls. (libgomp would end the process where a thread can't be started.)
+ */
 
 typedef struct Loop {
   TcTask *task;
@@ -24,9 +25,11 @@ typedef struct Worker {
 static void work(Loop *loop, int worker) {
   while (!atomic_load_explicit(&loop->stop, memory_order_relaxed)) {
     const int64_t begin = atomic_fetch_add_explicit(&loop->next, loop->grain, memory_order_relaxed);
-    if (begin >= loop->count) break;
+    if (begin >= loop->count)
+      break;
     const int64_t end = loop->count - begin < loop->grain ? loop->count : begin + loop->grain;
-    if (!loop->task(loop->data, begin, end, worker)) atomic_store(&loop->stop, true);
+    if (!loop->task(loop->data, begin, end, worker))
+      atomic_store(&loop->stop, true);
     const int64_t done = atomic_fetch_add_explicit(&loop->done, end - begin, memory_order_relaxed) + end - begin;
     if (worker == 0 && loop->progress && loop->progress->function &&
         !loop->progress->function(loop->progress->user, (double)done / (double)loop->count)) {
@@ -48,7 +51,8 @@ TetcastStatus tc_parallel_for(TetcastContext *context, int64_t count, int64_t gr
   atomic_init(&loop.stop, false);
   const int64_t pieces = (count + loop.grain - 1) / loop.grain;
   int threads = tc_call_alone() ? 1 : tc_context_threads(context);
-  if (threads > pieces) threads = (int)pieces;
+  if (threads > pieces)
+    threads = (int)pieces;
   Worker *workers = threads > 1 ? tc_allocate(context, threads, sizeof *workers) : NULL;
   int started = 1;
   while (workers && started < threads) {

@@ -12,8 +12,7 @@
 #define CLI_VTK_FUNCTIONS(X)                                                                                           \
   X(TetcastDatasetDesc, dataset_desc_default, (void))                                                                  \
   X(bool, dataset_format, (int, const char **, const char **))                                                         \
-  X(TetcastStatus, dataset_read,                                                                                       \
-    (TetcastContext *, const char *, const TetcastDatasetDesc *, TetcastDataset **))                                   \
+  X(TetcastStatus, dataset_read, (TetcastContext *, const char *, const TetcastDatasetDesc *, TetcastDataset **))      \
   X(void, dataset_destroy, (TetcastDataset **))                                                                        \
   X(bool, dataset_cell_type, (const TetcastDataset *, int, const char **, int64_t *))                                  \
   X(bool, dataset_array, (const TetcastDataset *, int, TetcastDatasetArray *))                                         \

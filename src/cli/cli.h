@@ -27,12 +27,13 @@ void cli_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void cli_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void cli_set_quiet(bool quiet);
 
-/* Warnings are errors from here on. A step that may have come upon one ends with `return cli_verdict(CLI_DONE)`: CLI_FAILED if it has, else
- * the code it is given. */
+/* Warnings are errors from here on. A step that may have come upon one ends with `return cli_verdict(CLI_DONE)`:
+ * CLI_FAILED if it has, else the code it is given. */
 void cli_set_strict(bool strict);
 int cli_verdict(int code);
 
-/* Of warnings that differ in nothing but numbers only the first is shown from here on: for work that does the same many times. */
+/* Of warnings that differ in nothing but numbers only the first is shown from here on: for work that does the same many
+ * times. */
 void cli_warn_once(void);
 bool cli_quiet(void);
 

@@ -14,7 +14,8 @@ static bool names_all_of(const char *selector, const TetcastDatasetArray *array)
   return !strncmp(selector, array->name, length) && (!selector[length] || !strcmp(selector + length, where));
 }
 
-/* How many components the array has that is named like this as a whole; 1 for anything else, e.g. one component of it. */
+/* How many components the array has that is named like this as a whole; 1 for anything else, e.g. one component of it.
+ */
 static int components_of(const TetcastDataset *dataset, const char *selector) {
   TetcastDatasetArray array;
   for (int i = 0; cli_vtk()->dataset_array(dataset, i, &array); i++)
@@ -25,13 +26,15 @@ static int components_of(const TetcastDataset *dataset, const char *selector) {
 
 static bool check_count(const char *option, const char *selector, int count, const RenderOptions *options) {
   if (count > TETCAST_MAX_GROUPS) {
-    cli_error("--%s: array '%s' has %d components, more than the %d groups that are possible", option, selector, count, TETCAST_MAX_GROUPS);
+    cli_error("--%s: array '%s' has %d components, more than the %d groups that are possible", option, selector, count,
+              TETCAST_MAX_GROUPS);
     return false;
   }
   const bool color = count == 3 && !strcmp(option, "emission");
   if (count == 1 || color || render_options_given(options, OPTION_GROUPS))
     return true;
-  cli_error("--%s: array '%s' has %d components; choose one, '%s:0', or the magnitude, '%s:mag', or take each as a group, --groups",
+  cli_error("--%s: array '%s' has %d components; choose one, '%s:0', or the magnitude, '%s:mag', or take each as a "
+            "group, --groups",
             option, selector, count, selector, selector);
   return false;
 }
@@ -54,7 +57,8 @@ static bool read_array(const TetcastDataset *dataset, const RenderOptions *optio
     nonfinite += here;
   }
   if (nonfinite > 0)
-    cli_warning("array %s: %lld values are NaN or infinite; the cells they touch are transparent", selector, (long long)nonfinite);
+    cli_warning("array %s: %lld values are NaN or infinite; the cells they touch are transparent", selector,
+                (long long)nonfinite);
   return true;
 }
 

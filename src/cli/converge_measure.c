@@ -37,8 +37,8 @@ static void add_time(ConvergeRow *row, double seconds) {
 }
 
 /* The bound on the exact picture's error, which takes longer to find than the picture: it is not timed. */
-static TetcastStatus find_bound(Converge *converge, const TetcastScene *scene, const TetcastCamera *camera, TetcastRenderDesc desc,
-                                const TetcastFrame *like, double *bound) {
+static TetcastStatus find_bound(Converge *converge, const TetcastScene *scene, const TetcastCamera *camera,
+                                TetcastRenderDesc desc, const TetcastFrame *like, double *bound) {
   TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
   frame_desc.width = tetcast_frame_width(like);
   frame_desc.height = tetcast_frame_height(like);
@@ -76,8 +76,8 @@ TetcastStatus converge_render(Converge *converge, const TetcastScene *scene, con
   if (row->tolerance > 0)
     row->bound = stats.error;
   return row->integrator == TETCAST_INTEGRATOR_EXACT && row->tolerance == 0 && row->timed == 1
-           ? find_bound(converge, scene, camera, desc, frame, &row->bound)
-           : TETCAST_OK;
+             ? find_bound(converge, scene, camera, desc, frame, &row->bound)
+             : TETCAST_OK;
 }
 
 void converge_compare(ConvergeRow *row, const double *picture, const double *truth, int64_t count) {

@@ -95,7 +95,8 @@ static void put_run(FILE *file, const Converge *converge) {
             (long long)converge->rows[0].segments);
   }
   bool single = false;
-  for (int i = 0; i < converge->count; ++i) single = single || strcmp(converge->rows[i].precision, "single") == 0;
+  for (int i = 0; i < converge->count; ++i)
+    single = single || strcmp(converge->rows[i].precision, "single") == 0;
   fprintf(file, "| arithmetic | double precision%s; kernels: ", single ? ", single where a tolerance allows it" : "");
   put_kernels(file, converge);
   fputs(" |\n", file);

@@ -268,11 +268,12 @@ int converge_run_scene(Converge *converge) {
                 converge->rays_replaced);
   const double worst = fmax(converge->check_max, converge->check_stiff);
   if (!(worst <= CONVERGE_TRUST))
-    cli_warning("the exact picture and the brute-force reference differ by %.2g: errors in the report mean nothing below "
-                "that; %s",
-                worst,
-                converge->stage.info.traversal == TETCAST_TRAVERSAL_SHELL
-                    ? "if the mesh's cells overlap, --traversal faces is right"
-                    : "please report this");
+    cli_warning(
+        "the exact picture and the brute-force reference differ by %.2g: errors in the report mean nothing below "
+        "that; %s",
+        worst,
+        converge->stage.info.traversal == TETCAST_TRAVERSAL_SHELL
+            ? "if the mesh's cells overlap, --traversal faces is right"
+            : "please report this");
   return CLI_DONE;
 }

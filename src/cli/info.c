@@ -167,7 +167,8 @@ static void print_steps(const Info *info) {
   double first = 0;
   info->vtk->dataset_time(info->dataset, 0, &first);
   info->vtk->dataset_time(info->dataset, step, &time);
-  printf("time steps    %" PRId64 ", from t=%.9g to t=%.9g; this is step %" PRId64 ", t=%.9g\n", steps, first, last, step, time);
+  printf("time steps    %" PRId64 ", from t=%.9g to t=%.9g; this is step %" PRId64 ", t=%.9g\n", steps, first, last,
+         step, time);
 }
 
 static void print_blocks(const Info *info) {
@@ -216,9 +217,9 @@ static void print_cut(const TetcastCutInfo *cut) {
   const struct {
     const char *name;
     int64_t count;
-  } rows[] = {{"curved cells", cut->curved},     {"added vertices", cut->added_vertices},
-              {"collapsed cells", cut->collapsed}, {"inverted cells", cut->inverted},
-              {"overlapping cells", cut->folded}, {"open polyhedra", cut->open},
+  } rows[] = {{"curved cells", cut->curved},        {"added vertices", cut->added_vertices},
+              {"collapsed cells", cut->collapsed},  {"inverted cells", cut->inverted},
+              {"overlapping cells", cut->folded},   {"open polyhedra", cut->open},
               {"cells without inside", cut->empty}, {"oversized cells", cut->oversized}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     if (rows[i].count == 0)
@@ -307,8 +308,10 @@ static int parse(int argc, char **argv, Request *request) {
       fputs(help_text, stdout);
       return cli_finish_output();
     case 's':
-      if (!cli_parse_number(optarg, &number) || !(number >= 0 && number <= TETCAST_MAX_SUBDIVISION) || number != (int)number)
-        return cli_usage_error("info", "--subdivide %s: expected a whole number from 1 to %d, or 0: as the nodes lie", optarg, TETCAST_MAX_SUBDIVISION);
+      if (!cli_parse_number(optarg, &number) || !(number >= 0 && number <= TETCAST_MAX_SUBDIVISION) ||
+          number != (int)number)
+        return cli_usage_error("info", "--subdivide %s: expected a whole number from 1 to %d, or 0: as the nodes lie",
+                               optarg, TETCAST_MAX_SUBDIVISION);
       request->subdivide = (int)number;
       break;
     case 'j':
@@ -333,7 +336,8 @@ static int parse(int argc, char **argv, Request *request) {
       break;
     case 't':
       if (!strcmp(optarg, "all") || !render_option_dataset(NULL, optarg, -1, &desc))
-        return cli_usage_error("info", "--time %s: expected a step, from 0 (or -1, the last, and back), or t=TIME", optarg);
+        return cli_usage_error("info", "--time %s: expected a step, from 0 (or -1, the last, and back), or t=TIME",
+                               optarg);
       request->time = optarg;
       break;
     case 'm':

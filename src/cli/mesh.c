@@ -24,28 +24,26 @@
 #include "demo/fields.h"
 #include "file.h"
 
-static const char help_text[] =
-  "Usage: tetcast mesh SURFACE -o OUT.vtu [options]\n"
-  "\n"
-  "Fills a closed surface with tetrahedra, using TetGen. SURFACE: .off .stl .ply .obj\n"
-  ".vtp, or TetGen's own .poly and .smesh, which can have holes; .node with .ele is a\n"
-  "mesh already and is only converted.\n"
-  "\n"
-  "  -o, --output FILE     .vtu\n"
-  "      --quality R       largest ratio of circumradius to shortest edge, above 1;\n"
-  "                        default 1.4, 0: any. Cells in sharp corners of the surface\n"
-  "                        may exceed it; with less than 1.2 it may never end\n"
-  "      --max-volume V    largest volume of a tetrahedron\n"
-  "      --field NAME[:…]  attach one of these scalars to the vertices:\n";
+static const char help_text[] = "Usage: tetcast mesh SURFACE -o OUT.vtu [options]\n"
+                                "\n"
+                                "Fills a closed surface with tetrahedra, using TetGen. SURFACE: .off .stl .ply .obj\n"
+                                ".vtp, or TetGen's own .poly and .smesh, which can have holes; .node with .ele is a\n"
+                                "mesh already and is only converted.\n"
+                                "\n"
+                                "  -o, --output FILE     .vtu\n"
+                                "      --quality R       largest ratio of circumradius to shortest edge, above 1;\n"
+                                "                        default 1.4, 0: any. Cells in sharp corners of the surface\n"
+                                "                        may exceed it; with less than 1.2 it may never end\n"
+                                "      --max-volume V    largest volume of a tetrahedron\n"
+                                "      --field NAME[:…]  attach one of these scalars to the vertices:\n";
 
-static const char more_help_text[] =
-  "      --single          coordinates and scalar in single precision\n"
-  "      --strict          a warning is an error: nothing is written\n"
-  "      --quiet           no summary, no warnings\n"
-  "  -h, --help            this text\n"
-  "\n"
-  "Example:\n"
-  "  tetcast mesh ball.off --max-volume 2 --field hydrogen:4,2,0 -o orbital.vtu\n";
+static const char more_help_text[] = "      --single          coordinates and scalar in single precision\n"
+                                     "      --strict          a warning is an error: nothing is written\n"
+                                     "      --quiet           no summary, no warnings\n"
+                                     "  -h, --help            this text\n"
+                                     "\n"
+                                     "Example:\n"
+                                     "  tetcast mesh ball.off --max-volume 2 --field hydrogen:4,2,0 -o orbital.vtu\n";
 
 typedef struct Job {
   const char *surface, *output;
@@ -61,7 +59,9 @@ static bool ends_with(const char *text, const char *end) {
 
 /* ── what the mesh is like ── */
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 static void cross(const double a[3], const double b[3], double c[3]) {
   for (int i = 0; i < 3; i++)
@@ -161,7 +161,7 @@ static TetcastStatus make_mesh(const Job *job, TetcastContext *context, const Cl
 /* The same mesh with its coordinates in single precision. */
 static TetcastStatus make_single(TetcastContext *context, TetcastMesh **mesh) {
   const int64_t count = tetcast_mesh_vertex_count(*mesh);
-  float (*vertices)[3] = cli_allocate(sizeof *vertices * (size_t)count);
+  float(*vertices)[3] = cli_allocate(sizeof *vertices * (size_t)count);
   for (int64_t i = 0; i < count; i++) {
     double x[3];
     tetcast_mesh_vertex(*mesh, i, x);
@@ -257,14 +257,17 @@ static int explain(const Job *job, int status, int phase, const sigset_t *interr
     return interrupted(WTERMSIG(status));
   if (WIFEXITED(status) && phase != PHASE_MESH) /* after a message */
     return WEXITSTATUS(status) ? WEXITSTATUS(status) : CLI_FAILED;
-  const char *how = !WIFSIGNALED(status) ? "it ended the process"
+  const char *how = !WIFSIGNALED(status)          ? "it ended the process"
                     : WTERMSIG(status) == SIGKILL ? "killed; out of memory?"
                                                   : strsignal(WTERMSIG(status));
   if (phase == PHASE_MESH)
     cli_error("%s: TetGen gave up on it (%s); is it free of self-intersections?", job->surface, how);
   else
     cli_error("%s: %s failed (%s)", phase == PHASE_WRITE ? job->output : job->surface,
-              phase == PHASE_WRITE ? "writing" : phase == PHASE_FIELD ? "computing the field" : "reading", how);
+              phase == PHASE_WRITE   ? "writing"
+              : phase == PHASE_FIELD ? "computing the field"
+                                     : "reading",
+              how);
   return CLI_FAILED;
 }
 
@@ -340,12 +343,15 @@ static int parse_option(Job *job, int code) {
   }
 }
 
-static const struct option words[] = {
-  {"output", required_argument, NULL, 'o'},     {"quality", required_argument, NULL, 'q'},
-  {"max-volume", required_argument, NULL, 'v'}, {"field", required_argument, NULL, 'f'},
-  {"single", no_argument, NULL, 's'},           {"quiet", no_argument, NULL, 'Q'},
-  {"help", no_argument, NULL, 'h'},             {"strict", no_argument, NULL, 'S'},
-  {NULL, 0, NULL, 0}};
+static const struct option words[] = {{"output", required_argument, NULL, 'o'},
+                                      {"quality", required_argument, NULL, 'q'},
+                                      {"max-volume", required_argument, NULL, 'v'},
+                                      {"field", required_argument, NULL, 'f'},
+                                      {"single", no_argument, NULL, 's'},
+                                      {"quiet", no_argument, NULL, 'Q'},
+                                      {"help", no_argument, NULL, 'h'},
+                                      {"strict", no_argument, NULL, 'S'},
+                                      {NULL, 0, NULL, 0}};
 
 int completion_of_mesh(CompletionOption list[COMPLETION_OPTIONS]) {
   static const char *fields[COMPLETION_WORDS];

@@ -15,7 +15,7 @@ static struct {
   const char *place, *hint;
   bool failed; /* an error has been shown; guarded by the lock of stderr, as is the list */
   bool once, strict;
-  bool refused; /* a warning was an error */
+  bool refused;    /* a warning was an error */
   char **warnings; /* that were shown, without their digits */
   int count, capacity;
   bool held;
@@ -78,10 +78,8 @@ static void show(const char *kind, const char *place, const char *text) {
 static bool keep(int kind, const char *place, const char *text) {
   if (!messages.held || pthread_equal(messages.holder, pthread_self()))
     return false;
-  messages.kept =
-      cli_grow(messages.kept, messages.kept_count, &messages.kept_capacity, sizeof *messages.kept);
-  messages.kept[messages.kept_count++] =
-      (Message){kind, place ? cli_duplicate(place) : NULL, cli_duplicate(text)};
+  messages.kept = cli_grow(messages.kept, messages.kept_count, &messages.kept_capacity, sizeof *messages.kept);
+  messages.kept[messages.kept_count++] = (Message){kind, place ? cli_duplicate(place) : NULL, cli_duplicate(text)};
   return true;
 }
 

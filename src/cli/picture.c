@@ -21,7 +21,8 @@ void picture_await_image(Run *run) {
   run->image_pending = false;
 }
 
-/* Whether colours go from the least to the largest value of the picture: integrals along rays are not in the field's range. */
+/* Whether colours go from the least to the largest value of the picture: integrals along rays are not in the field's
+ * range. */
 static bool range_of_picture(const Run *run) {
   const RenderOptions *options = &run->options;
   return render_options_blend(options) == TETCAST_BLEND_ADDITIVE && !render_options_given(options, OPTION_TRANSFER) &&
@@ -45,8 +46,8 @@ static TetcastStatus color_by_picture(Run *run) {
     return TETCAST_OK;
   Stage *stage = &run->stage;
   tetcast_transfer_function_destroy(&stage->transfer_function);
-  const TetcastStatus status =
-      tetcast_scene_create_preset(stage->scene, render_options_preset(&run->options), range[0], range[1], &stage->transfer_function);
+  const TetcastStatus status = tetcast_scene_create_preset(stage->scene, render_options_preset(&run->options), range[0],
+                                                           range[1], &stage->transfer_function);
   return status == TETCAST_OK ? tetcast_frame_recolor(run->values, stage->transfer_function) : status;
 }
 
@@ -96,7 +97,8 @@ static void check_brightness(const Run *run) {
     cli_warning("%s up to %g: above 1 all is white in integer pixels; .exr and .tif hold it as it is",
                 radiance ? "radiance" : "colours", (double)brightest);
   else if (radiance && brightest > 0 && brightest < 1.0f / 255)
-    cli_warning("radiance up to %g: below 1/255 all is black in integer pixels; .exr and .tif hold it as it is", (double)brightest);
+    cli_warning("radiance up to %g: below 1/255 all is black in integer pixels; .exr and .tif hold it as it is",
+                (double)brightest);
 }
 
 int picture_render(Run *run) {

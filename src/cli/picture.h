@@ -22,7 +22,7 @@ typedef struct Run {
   Stage stage;
   TetcastFrame *frame;
   TetcastFrame *values; /* the same pixels with their values, where colours follow from them; NULL: they don't */
-  RunStats stats; /* of the last picture */
+  RunStats stats;       /* of the last picture */
 } Run;
 
 /* Each step returns an exit code. */

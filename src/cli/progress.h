@@ -21,7 +21,8 @@ int cli_interrupted(void);
  * than about a second and the command is not quiet, and that cancels the work after a signal. */
 TetcastProgress cli_progress(const char *label);
 
-/* Until this is called with NULL, all bars are the part from `begin` to `end` of one bar with this label, which stays valid. */
+/* Until this is called with NULL, all bars are the part from `begin` to `end` of one bar with this label, which stays
+ * valid. */
 void cli_progress_part(const char *label, double begin, double end);
 
 /* Draws the bar of the last cli_progress(), for work of several calls with one bar. False after a signal. */

@@ -39,7 +39,8 @@ static int check(Run *run) {
   if (code < 0 && series_wanted(options) && render_options_blend(options) == TETCAST_BLEND_ADDITIVE &&
       !render_options_given(options, OPTION_TRANSFER) && render_options_range(options) != RANGE_FIXED &&
       render_options_range(options) != RANGE_STEP)
-    code = cli_usage_error("render", "--blend additive: the range of all steps' pictures is known when they are made; expected --range LO,HI or --range step");
+    code = cli_usage_error("render", "--blend additive: the range of all steps' pictures is known when they are made; "
+                                     "expected --range LO,HI or --range step");
   if (code >= 0)
     return code;
   code = stage_begin(&run->stage, options);
@@ -50,7 +51,8 @@ static int check(Run *run) {
       (options->save_scene && !cli_file_check(options->save_scene)))
     return CLI_FAILED;
   if (render_options_given(options, OPTION_EMISSION) && !render_options_given(options, OPTION_BACKGROUND))
-    options->background[0] = options->background[1] = options->background[2] = 0; /* what shines is seen against the dark */
+    options->background[0] = options->background[1] = options->background[2] =
+        0; /* what shines is seen against the dark */
   if (options->source >> OPTION_BACKGROUND & 1 && render_options_floating(options)) /* on the command line, that is */
     cli_warning("--background has no effect: floating-point pixels hold the picture without background");
   return cli_verdict(CLI_DONE);

@@ -17,9 +17,9 @@
 #include "numbered.h"
 
 /* A picture is made by a transfer function or from coefficients. */
-#define DIRECT   (BIT(OPTION_EXTINCTION) | BIT(OPTION_EMISSION) | BIT(OPTION_GROUPS))
-#define TRANSFER                                                                                                        \
-  (BIT(OPTION_ARRAY) | BIT(OPTION_TRANSFER) | BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | BIT(OPTION_OPACITY_MODEL) | \
+#define DIRECT (BIT(OPTION_EXTINCTION) | BIT(OPTION_EMISSION) | BIT(OPTION_GROUPS))
+#define TRANSFER                                                                                                       \
+  (BIT(OPTION_ARRAY) | BIT(OPTION_TRANSFER) | BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | BIT(OPTION_OPACITY_MODEL) |     \
    BIT(OPTION_BLEND))
 
 /* Order of the library's enumerations. */
@@ -76,18 +76,18 @@ const RenderRow render_table[OPTION_COUNT] = {
                         .form = "expected a whole number from 1 to 65536"},
     [OPTION_BACKGROUND] = {"background", KIND_NUMBERS, AT(background), 3, 4, 0, 1, .only = COMMAND_RENDER,
                            .form = "expected r,g,b or r,g,b,a from 0 to 1, a name such as white or transparent, or "
-                                    "#rrggbb"},
+                                   "#rrggbb"},
     [OPTION_INTEGRATOR] =
         {"integrator", KIND_TEXT, AT(integrator), .only = COMMAND_RENDER,
          .form = "expected exact, midpoint:N, trapezoid:N, gauss:N (N to 16) or table:N (N from 2 to 4096)"},
     [OPTION_TOLERANCE] = {"tolerance", KIND_NUMBERS, AT(tolerance), 1, 1, 0, DBL_MAX, .only = COMMAND_RENDER,
                           .form = "expected a number, 0 or above"},
-    [OPTION_CHANNELS] = {"channels", KIND_TEXT, AT(channels), .only = COMMAND_RENDER,
-                         .form = "expected error, or value, or of radiance, optical_depth, transmittance and path_length some"},
+    [OPTION_CHANNELS] =
+        {"channels", KIND_TEXT, AT(channels), .only = COMMAND_RENDER,
+         .form = "expected error, or value, or of radiance, optical_depth, transmittance and path_length some"},
     [OPTION_TRAVERSAL] = {"traversal", KIND_CHOICE, AT(traversal), .names = traversals,
                           .form = "expected shell or faces"},
-    [OPTION_ISA] = {"isa", KIND_CHOICE, AT(isa), .names = isas,
-                    .form = "expected auto, scalar, avx2 or avx512"},
+    [OPTION_ISA] = {"isa", KIND_CHOICE, AT(isa), .names = isas, .form = "expected auto, scalar, avx2 or avx512"},
     [OPTION_THREADS] = {"threads", KIND_INTEGERS, AT(threads), 1, 1, 0, 4096,
                         .form = "expected a whole number from 0 (all) to 4096"},
     [OPTION_REPEAT] = {"repeat", KIND_INTEGERS, AT(repeat), 1, 1, 1, 1e6,
@@ -109,7 +109,11 @@ bool render_option_of_command(OptionId id, RenderCommand command) {
 }
 
 RenderOptions render_options_default(RenderCommand command) {
-  RenderOptions options = {.command = command, .size = {1024, 768}, .samples = 1, .background = {1, 1, 1, 1}, .repeat = 1,
+  RenderOptions options = {.command = command,
+                           .size = {1024, 768},
+                           .samples = 1,
+                           .background = {1, 1, 1, 1},
+                           .repeat = 1,
                            .merge_tolerance = -1};
   if (command == COMMAND_CONVERGE) {
     options.size[0] = 256;
@@ -149,7 +153,9 @@ OptionId render_option_find(const char *key) {
 }
 
 const char *render_option_key(OptionId id) {
-  return render_option_of_command(id, COMMAND_RENDER) && id != OPTION_SCENE && id != OPTION_SAVE_SCENE ? render_table[id].name : NULL;
+  return render_option_of_command(id, COMMAND_RENDER) && id != OPTION_SCENE && id != OPTION_SAVE_SCENE
+             ? render_table[id].name
+             : NULL;
 }
 
 bool render_option_is_path(OptionId id) {
@@ -195,7 +201,8 @@ bool render_option_integrator(const char *text, TetcastIntegrator *integrator, i
   static const struct {
     const char *name;
     int least, most;
-  } integrators[] = {{"exact", 0, 0}, {"midpoint:", 1, 1 << 20}, {"trapezoid:", 1, 1 << 20}, {"gauss:", 1, 16}, {"table:", 2, 4096}};
+  } integrators[] = {
+      {"exact", 0, 0}, {"midpoint:", 1, 1 << 20}, {"trapezoid:", 1, 1 << 20}, {"gauss:", 1, 16}, {"table:", 2, 4096}};
   for (int i = 0; i < 5; i++) {
     const size_t length = strlen(integrators[i].name);
     double number = 0;
@@ -270,8 +277,10 @@ bool render_option_is_tiff(const char *path) {
 bool render_options_floating(const RenderOptions *options) {
   if (options->pixel_type != TETCAST_PIXEL_DEFAULT)
     return options->pixel_type >= TETCAST_PIXEL_HALF;
-  return options->output && (render_option_has_extension(options->output, ".exr") || render_option_is_tiff(options->output) ||
-                             render_option_has_extension(options->output, ".hdr") || render_option_has_extension(options->output, ".rgbe"));
+  return options->output &&
+         (render_option_has_extension(options->output, ".exr") || render_option_is_tiff(options->output) ||
+          render_option_has_extension(options->output, ".hdr") ||
+          render_option_has_extension(options->output, ".rgbe"));
 }
 
 static const char *set_numbers(OptionId id, void *at, const OptionValue *value) {

@@ -65,7 +65,8 @@ typedef enum RangeKind { RANGE_DEFAULT, RANGE_FIXED, RANGE_STEP, RANGE_SERIES } 
 typedef struct RenderOptions {
   RenderCommand command;
   /* NULL unless given */
-  char *input, *output, *array, *block, *time, *transfer, *preset, *extinction, *emission, *integrator, *channels, *stats, *scene, *save_scene;
+  char *input, *output, *array, *block, *time, *transfer, *preset, *extinction, *emission, *integrator, *channels,
+      *stats, *scene, *save_scene;
   char **inputs; /* [input_count] of several files, the steps of a series; input is the first. NULL: one file */
   int input_count;
   json_t *transfer_object; /* of a scene file; instead of transfer */
@@ -106,8 +107,8 @@ const char *render_option_choice(OptionId id, int value);
 /* What --integrator names: "exact", or "midpoint:4" and the like. False: neither. */
 bool render_option_integrator(const char *text, TetcastIntegrator *integrator, int *n);
 
-/* What --block, --time and --merge-tolerance say (NULL, NULL, negative: nothing). False: the time is neither a step, e.g. "3", nor a
- * time, e.g. "t=0.5", nor "all", which leaves the first step. */
+/* What --block, --time and --merge-tolerance say (NULL, NULL, negative: nothing). False: the time is neither a step,
+ * e.g. "3", nor a time, e.g. "t=0.5", nor "all", which leaves the first step. */
 bool render_option_dataset(const char *block, const char *time, double merge_tolerance, TetcastDatasetDesc *desc);
 
 /* What --range says; RANGE_DEFAULT where it is not given, or given up for a transfer function. */

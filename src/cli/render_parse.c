@@ -29,12 +29,15 @@ static const char *find_mixture(const RenderOptions *options) {
     if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE) {
       if (options->integrator && strcmp(options->integrator, "exact"))
         return "--integrator: with another --blend than composite there is only exact";
-      return channels & ~(uint32_t)TETCAST_CHANNEL_VALUE ? "--channels: only value is possible with another --blend than composite" : NULL;
+      return channels & ~(uint32_t)TETCAST_CHANNEL_VALUE
+                 ? "--channels: only value is possible with another --blend than composite"
+                 : NULL;
     }
     if (channels & TETCAST_CHANNEL_VALUE)
       return "--channels value: needs --blend maximum, minimum, average or additive";
     const TetcastChannelInfo *info = NULL;
-    for (int i = 0; (info = tetcast_channel_info(i)) && !(channels & (uint32_t)info->channel && info->needs_coefficients);)
+    for (int i = 0;
+         (info = tetcast_channel_info(i)) && !(channels & (uint32_t)info->channel && info->needs_coefficients);)
       i++;
     return info ? "--channels: only error is possible without --extinction or --emission" : NULL;
   }
@@ -44,7 +47,8 @@ static const char *find_mixture(const RenderOptions *options) {
     return "--channels value: not possible with --extinction or --emission";
   if (channels & TETCAST_CHANNEL_RADIANCE && !render_options_given(options, OPTION_EMISSION))
     return "--channels radiance: needs --emission";
-  if (channels & (TETCAST_CHANNEL_OPTICAL_DEPTH | TETCAST_CHANNEL_TRANSMITTANCE) && !render_options_given(options, OPTION_EXTINCTION))
+  if (channels & (TETCAST_CHANNEL_OPTICAL_DEPTH | TETCAST_CHANNEL_TRANSMITTANCE) &&
+      !render_options_given(options, OPTION_EXTINCTION))
     return "--channels optical_depth, transmittance: need --extinction";
   return NULL;
 }
@@ -65,15 +69,15 @@ static char *find_fault(const RenderOptions *options) {
                      options->channels ? "--channels error" : "--tolerance", options->integrator);
   if (!render_options_channels(options))
     return NULL;
-  const char *output = options->output ? options->output : ".png", *asked = options->channels ? "--channels " : "--groups";
+  const char *output = options->output ? options->output : ".png",
+             *asked = options->channels ? "--channels " : "--groups";
   const char *list = options->channels ? options->channels : "";
   if (!render_option_has_extension(output, ".exr") && !render_option_is_tiff(output))
     return cli_print("%s%s: only .exr and .tif hold more channels than colour and alpha, not %s", asked, list,
                      options->output ? output : "the default, a .png");
-  return render_options_floating(options)
-           ? NULL
-           : cli_print("%s%s: needs floating-point pixels, not %s", asked, list,
-                       render_option_choice(OPTION_PIXEL_TYPE, options->pixel_type));
+  return render_options_floating(options) ? NULL
+                                          : cli_print("%s%s: needs floating-point pixels, not %s", asked, list,
+                                                      render_option_choice(OPTION_PIXEL_TYPE, options->pixel_type));
 }
 
 static int set_from_text(RenderOptions *options, OptionId id, const char *text) {
@@ -122,8 +126,9 @@ static void list_words(RenderCommand command, struct option words[OPTION_COUNT +
       continue;
     if (ids)
       ids[count] = (OptionId)id;
-    words[count++] = (struct option){render_table[id].name, render_table[id].kind == KIND_FLAG ? no_argument : required_argument,
-                                     NULL, WORD_OPTION + id};
+    words[count++] =
+        (struct option){render_table[id].name, render_table[id].kind == KIND_FLAG ? no_argument : required_argument,
+                        NULL, WORD_OPTION + id};
   }
   words[count++] = (struct option){"help", no_argument, NULL, WORD_HELP};
   words[count] = (struct option){NULL, 0, NULL, 0};
@@ -157,7 +162,8 @@ static int parse_words(RenderOptions *options, int argc, char **argv, bool scene
   return optind < argc ? set_inputs(options, argc - optind, argv + optind) : -1;
 }
 
-/* A scene file states a picture; what converge takes of it is what is seen, at its own size but in the shape of the picture. */
+/* A scene file states a picture; what converge takes of it is what is seen, at its own size but in the shape of the
+ * picture. */
 static void take_scene(RenderOptions *options) {
   if (options->command == COMMAND_RENDER)
     return;
@@ -204,8 +210,8 @@ static int check_use(const RenderOptions *options) {
     return result;
   if (!options->refine)
     return cli_usage_error(command_name(options), "no input given");
-  const uint64_t used = BIT(OPTION_OUTPUT) | BIT(OPTION_THREADS) | BIT(OPTION_QUIET) | BIT(OPTION_STRICT) | BIT(OPTION_REFINE) |
-                        BIT(OPTION_NO_PLOTS);
+  const uint64_t used = BIT(OPTION_OUTPUT) | BIT(OPTION_THREADS) | BIT(OPTION_QUIET) | BIT(OPTION_STRICT) |
+                        BIT(OPTION_REFINE) | BIT(OPTION_NO_PLOTS);
   for (int id = 0; id < OPTION_COUNT; id++)
     if (options->given & ~used & BIT(id))
       return cli_usage_error("converge", "--%s needs an input: --refine has a scene of its own", render_table[id].name);
@@ -219,7 +225,8 @@ int render_options_parse(RenderOptions *options, int argc, char **argv) {
     if (!scene_file_read(options))
       return CLI_FAILED;
     if (options->command == COMMAND_CONVERGE && render_options_direct(options)) {
-      cli_error("%s: a scene of extinction or emission arrays is always exact: there is nothing to compare", options->scene);
+      cli_error("%s: a scene of extinction or emission arrays is always exact: there is nothing to compare",
+                options->scene);
       return CLI_FAILED;
     }
     take_scene(options);

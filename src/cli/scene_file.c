@@ -227,7 +227,8 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
   if (options->subdivide > 0)
     json_object_set_new(scene, "subdivide", json_integer((json_int_t)options->subdivide));
   if (failed) {
-    cli_error("cannot write '%s': the name of the input, the output, the array or the block is not UTF-8", options->save_scene);
+    cli_error("cannot write '%s': the name of the input, the output, the array or the block is not UTF-8",
+              options->save_scene);
     json_decref(scene);
     return false;
   }

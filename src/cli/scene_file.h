@@ -16,8 +16,8 @@ bool scene_file_read(RenderOptions *options);
  * given, for free(); NULL: it is something else. */
 char *scene_file_mistaken(const char *path);
 
-/* Writes options->save_scene: everything that makes the picture again, bit for bit. transfer_function NULL: each step of a series has one
- * of its own, by the preset. False after a message. */
+/* Writes options->save_scene: everything that makes the picture again, bit for bit. transfer_function NULL: each step
+ * of a series has one of its own, by the preset. False after a message. */
 bool scene_file_write(const RenderOptions *options, const char *array, const TetcastCamera *camera,
                       const TetcastTransferFunction *transfer_function);
 

@@ -97,7 +97,8 @@ static void show_step(Series *series, const char *what, int64_t step) {
   cli_set_place(series->count > 1 ? series->place : NULL);
 }
 
-/* Signals end the process at once while a step is read; from its preparation on they wait until what is being done is done. */
+/* Signals end the process at once while a step is read; from its preparation on they wait until what is being done is
+ * done. */
 static void let_go(Series *series) {
   if (!series->held)
     return;
@@ -253,7 +254,8 @@ static int check_former(Series *series, const char *path) {
   if (code == CLI_DONE)
     code = picture_write(series->run, again);
   if (code == CLI_DONE && !same_content(again, path)) {
-    cli_error("--resume: '%s' is not the picture that would be made now: settings or data were others; without --resume all are made anew",
+    cli_error("--resume: '%s' is not the picture that would be made now: settings or data were others; without "
+              "--resume all are made anew",
               path);
     code = CLI_FAILED;
   }
@@ -340,7 +342,8 @@ static int write_files(const Series *series) {
   const RenderOptions *options = &series->run->options;
   const Stage *stage = &series->run->stage;
   const bool own = render_options_range(options) == RANGE_STEP;
-  if (options->save_scene && !scene_file_write(options, stage->array, &series->camera, own ? NULL : stage->transfer_function))
+  if (options->save_scene &&
+      !scene_file_write(options, stage->array, &series->camera, own ? NULL : stage->transfer_function))
     return CLI_FAILED;
   if (!options->stats)
     return CLI_DONE;

@@ -377,7 +377,8 @@ char *sight_fault(const Run *run) {
   bool blank = !look.seen;
   if (direct) /* what is not 0 but too dark is told apart */
     blank = look.most_color == 0 && (data ? look.most_alpha == 0 : look.most_alpha < visible);
-  const bool projected = render_options_blend(&run->options) != TETCAST_BLEND_COMPOSITE; /* in which nothing hides anything */
+  const bool projected =
+      render_options_blend(&run->options) != TETCAST_BLEND_COMPOSITE; /* in which nothing hides anything */
   const bool solid = !data && !projected && look.seen && !look.translucent;
   const double *bounds = run->stage.info.bounds;
   Probe probe = {.run = run};

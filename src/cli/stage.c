@@ -278,7 +278,8 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
 
 int stage_shade(Stage *stage, const RenderOptions *options, const double range[2]) {
   const double start = cli_seconds();
-  const TetcastStatus status = render_options_direct(options) ? TETCAST_OK : set_transfer_function(stage, options, range);
+  const TetcastStatus status =
+      render_options_direct(options) ? TETCAST_OK : set_transfer_function(stage, options, range);
   stage->prepare_seconds += cli_seconds() - start;
   return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }

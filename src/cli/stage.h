@@ -14,7 +14,7 @@ typedef struct Stage {
   TetcastContext *context;
   TetcastDataset *dataset; /* these four only until stage_drop_dataset() */
   TetcastMesh *mesh;
-  TetcastField *field;        /* NULL: coefficients instead */
+  TetcastField *field; /* NULL: coefficients instead */
   Coefficients coefficients;
   TetcastVolume *volume;
   TetcastVolumeInfo info;
@@ -23,7 +23,7 @@ typedef struct Stage {
   TetcastCamera camera;
   double range[2];   /* of the field's finite values */
   int64_t nonfinite; /* how many of its values are not finite */
-  char *array;  /* what was read, as --array would name it; NULL: coefficients, or uniform matter without labels */
+  char *array;       /* what was read, as --array would name it; NULL: coefficients, or uniform matter without labels */
   bool uniform; /* nothing else is there to be drawn: matter, in the colours of the array's labels if there is one */
   Matter matter;
   double read_seconds, prepare_seconds;
@@ -37,8 +37,8 @@ typedef struct Stage {
 int stage_begin(Stage *stage, const RenderOptions *options);
 int stage_read(Stage *stage, const RenderOptions *options);
 
-/* Reads a step, counted from 0, in place of the one that the options name: of the same array as the step that was read before, if any.
- * What was read of another one is dropped. */
+/* Reads a step, counted from 0, in place of the one that the options name: of the same array as the step that was read
+ * before, if any. What was read of another one is dropped. */
 int stage_read_step(Stage *stage, const RenderOptions *options, int64_t step);
 
 typedef struct StageValues {
@@ -49,10 +49,12 @@ typedef struct StageValues {
 /* Reads a step for its values alone; stage->mesh is not there then. */
 int stage_read_values(Stage *stage, const RenderOptions *options, int64_t step, StageValues *values);
 
-/* Prepares the volume, with its field or the scene's coefficients, and completes the camera. Holds interruptions from here on. */
+/* Prepares the volume, with its field or the scene's coefficients, and completes the camera. Holds interruptions from
+ * here on. */
 int stage_prepare(Stage *stage, const RenderOptions *options);
 
-/* Gives the scene its transfer function, if it has no coefficients; if there is none yet, for the range that the options state, or `range`. */
+/* Gives the scene its transfer function, if it has no coefficients; if there is none yet, for the range that the
+ * options state, or `range`. */
 int stage_shade(Stage *stage, const RenderOptions *options, const double range[2]);
 
 /* Gives back the memory of what was read; the scene does not need it. */

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Extinction κ and emission j as fields, in groups: ∫ j e^−τ dt and τ = ∫ κ dt of each, exactly. A group's numbers don't depend on what others there are,
- * but for their last bit.
+/* Extinction κ and emission j as fields, in groups: ∫ j e^−τ dt and τ = ∫ κ dt of each, exactly. A group's numbers
+ * don't depend on what others there are, but for their last bit.
  *
- * A few groups are integrated one after the other, each for all rays at once, a ray in each lane. Many are integrated ray after ray, a group in each
- * lane: a vertex's values lie next to each other in memory, and are loaded as they are.
+ * A few groups are integrated one after the other, each for all rays at once, a ray in each lane. Many are integrated
+ * ray after ray, a group in each lane: a vertex's values lie next to each other in memory, and are loaded as they are.
  *
- * What is gathered is, for each group, the radiance in the volume's unit of length and times emission_scale (so no sum along a ray overflows), the
- * optical depth and the transmittance; then the length of the path, the mean opacity of the groups that differ in it, and a bound on the error of
- * colour and opacity. */
+ * What is gathered is, for each group, the radiance in the volume's unit of length and times emission_scale (so no sum
+ * along a ray overflows), the optical depth and the transmittance; then the length of the path, the mean opacity of the
+ * groups that differ in it, and a bound on the error of colour and opacity. */
 #ifndef TC_GATHER_COEFFICIENTS_H
 #define TC_GATHER_COEFFICIENTS_H
 
@@ -19,7 +19,8 @@
 typedef struct TcBeam {
   TcVec radiance, depth, transmittance;                   /* of the finished blocks */
   TcVec block_radiance, block_depth, block_transmittance; /* of the block under way */
-  TcVec emitted, depth_error, radiance_error;             /* with TC_BOUND: Σ |radiance| as seen, and what the others may be off by */
+  TcVec emitted, depth_error,
+      radiance_error; /* with TC_BOUND: Σ |radiance| as seen, and what the others may be off by */
 } TcBeam;
 
 typedef struct TcGroups {
@@ -27,25 +28,29 @@ typedef struct TcGroups {
   int blocks;   /* by_rays: of TC_LANES groups */
   int columns;  /* by_rays: values of a ray */
   TcBeam *beam; /* [groups], or [TC_LANES rays][blocks] */
-  /* [values][TC_LANES], or [TC_LANES rays][columns]: at the face where rays entered their cells, at the one where they left; with TC_BOUND, the
-   * range of the latter's vertices. */
+  /* [values][TC_LANES], or [TC_LANES rays][columns]: at the face where rays entered their cells, at the one where they
+   * left; with TC_BOUND, the range of the latter's vertices. */
   double *near, *far, *range;
   TcLength length;
 } TcGroups;
 
 /* Whether values that are next to each other are those of groups one after the other. */
 TC_INLINE bool tc_groups_by_rays(const TcCoefficients *c) {
-  if (TC_LANES == 1 || 2 * c->groups < TC_LANES) return false;
+  if (TC_LANES == 1 || 2 * c->groups < TC_LANES)
+    return false;
   for (int list = 0; list < 2; ++list) {
     const int *slots = c->slots + list * c->groups;
     for (int g = 1; g < c->groups; ++g) {
-      if (slots[g] != slots[0] && slots[g] != slots[0] + g) return false;
+      if (slots[g] != slots[0] && slots[g] != slots[0] + g)
+        return false;
     }
   }
   return true;
 }
 
-TC_INLINE int tc_groups_blocks(const TcCoefficients *c) { return (c->groups + TC_LANES - 1) / TC_LANES; }
+TC_INLINE int tc_groups_blocks(const TcCoefficients *c) {
+  return (c->groups + TC_LANES - 1) / TC_LANES;
+}
 
 /* Doubles that a packet's TcGroups refers to. */
 static size_t tc_groups_size(const TcCoefficients *c) {
@@ -58,7 +63,8 @@ static void tc_groups_place(const TcCoefficients *c, double *memory, TcGroups *g
   groups->blocks = tc_groups_blocks(c);
   groups->columns = tc_coefficients_values(c) + TC_LANES; /* as vectors reach beyond the last */
   groups->beam = (TcBeam *)(void *)memory;
-  groups->near = memory + (groups->by_rays ? TC_LANES * groups->blocks : c->groups) * (int64_t)(sizeof(TcBeam) / sizeof(double));
+  groups->near =
+      memory + (groups->by_rays ? TC_LANES * groups->blocks : c->groups) * (int64_t)(sizeof(TcBeam) / sizeof(double));
   groups->far = groups->near + TC_LANES * groups->columns;
   groups->range = groups->far + TC_LANES * groups->columns;
 }
@@ -66,7 +72,8 @@ static void tc_groups_place(const TcCoefficients *c, double *memory, TcGroups *g
 TC_INLINE void tc_groups_begin(const TcGatherJob *job, TcGroups *groups) {
   const int beams = groups->by_rays ? TC_LANES * groups->blocks : job->coefficients->groups;
   memset(groups->beam, 0, (size_t)beams * sizeof *groups->beam);
-  for (int i = 0; i < beams; ++i) groups->beam[i].transmittance = groups->beam[i].block_transmittance = tc_set(1);
+  for (int i = 0; i < beams; ++i)
+    groups->beam[i].transmittance = groups->beam[i].block_transmittance = tc_set(1);
   tc_length_begin(job, &groups->length);
 }
 
@@ -74,7 +81,8 @@ TC_INLINE void tc_groups_begin(const TcGatherJob *job, TcGroups *groups) {
 
 /* TC_LANES values that lie next to each other. */
 TC_INLINE TcVec tc_groups_load(const TcRows *rows, int64_t first) {
-  if (rows->is_double) return tc_load((const double *)rows->data + first);
+  if (rows->is_double)
+    return tc_load((const double *)rows->data + first);
 #if TC_LANES == 1
   return (double)((const float *)rows->data)[first];
 #else
@@ -97,7 +105,8 @@ TC_INLINE TcVec tc_groups_gather(const TcRows *rows, const int64_t row[TC_LANES]
 }
 
 /* Those of the points, where the rays of `mask` are: a group in each lane. */
-TC_INLINE void tc_groups_at_rays(const unsigned on, const TcRows *rows, const TcGroups *groups, TcMask mask, const TcPacket *walk, double *values) {
+TC_INLINE void tc_groups_at_rays(const unsigned on, const TcRows *rows, const TcGroups *groups, TcMask mask,
+                                 const TcPacket *walk, double *values) {
   for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
     const int l = __builtin_ctz(lanes);
     TcVec weight[3];
@@ -107,31 +116,40 @@ TC_INLINE void tc_groups_at_rays(const unsigned on, const TcRows *rows, const Tc
       row[k] = (int64_t)TC_AT(walk->v[k].id, l) * rows->width;
     }
     for (int i = 0; i < rows->width; i += TC_LANES) {
-      const TcVec v[3] = {tc_groups_load(rows, row[0] + i), tc_groups_load(rows, row[1] + i), tc_groups_load(rows, row[2] + i)};
+      const TcVec v[3] = {tc_groups_load(rows, row[0] + i), tc_groups_load(rows, row[1] + i),
+                          tc_groups_load(rows, row[2] + i)};
       tc_store(values + l * groups->columns + i, tc_weighted(weight, v[0], v[1], v[2]));
-      if (on & TC_BOUND) tc_store(groups->range + l * groups->columns + i, tc_most3(v[0], v[1], v[2]) - tc_least3(v[0], v[1], v[2]));
+      if (on & TC_BOUND)
+        tc_store(groups->range + l * groups->columns + i, tc_most3(v[0], v[1], v[2]) - tc_least3(v[0], v[1], v[2]));
     }
   }
 }
 
 /* The same with a ray in each lane. Lanes that rest have vertices, too; their values count for nothing. */
-TC_INLINE void tc_groups_at_lanes(const unsigned on, const TcRows *rows, const TcGroups *groups, TcMask mask, const TcPacket *walk, double *values) {
+TC_INLINE void tc_groups_at_lanes(const unsigned on, const TcRows *rows, const TcGroups *groups, TcMask mask,
+                                  const TcPacket *walk, double *values) {
   int64_t row[3][TC_LANES];
   for (int k = 0; k < 3; ++k) {
     TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) row[k][l] = (int64_t)TC_AT(walk->v[k].id, l) * rows->width;
   }
   for (int i = 0; i < rows->width; ++i) {
-    const TcVec v[3] = {tc_groups_gather(rows, row[0], i), tc_groups_gather(rows, row[1], i), tc_groups_gather(rows, row[2], i)};
+    const TcVec v[3] = {tc_groups_gather(rows, row[0], i), tc_groups_gather(rows, row[1], i),
+                        tc_groups_gather(rows, row[2], i)};
     double *const at = values + i * TC_LANES, *const range = groups->range + i * TC_LANES;
     tc_store(at, tc_select(mask, tc_weighted(walk->at.barycentric, v[0], v[1], v[2]), tc_load(at)));
-    if (on & TC_BOUND) tc_store(range, tc_select(mask, tc_most3(v[0], v[1], v[2]) - tc_least3(v[0], v[1], v[2]), tc_load(range)));
+    if (on & TC_BOUND)
+      tc_store(range, tc_select(mask, tc_most3(v[0], v[1], v[2]) - tc_least3(v[0], v[1], v[2]), tc_load(range)));
   }
 }
 
-TC_INLINE void tc_groups_at(const unsigned on, const TcCoefficients *c, const TcGroups *groups, TcMask mask, const TcPacket *walk, double *values) {
-  if (!c->points) return;
-  if (groups->by_rays) tc_groups_at_rays(on, c->points, groups, mask, walk, values);
-  else tc_groups_at_lanes(on, c->points, groups, mask, walk, values);
+TC_INLINE void tc_groups_at(const unsigned on, const TcCoefficients *c, const TcGroups *groups, TcMask mask,
+                            const TcPacket *walk, double *values) {
+  if (!c->points)
+    return;
+  if (groups->by_rays)
+    tc_groups_at_rays(on, c->points, groups, mask, walk, values);
+  else
+    tc_groups_at_lanes(on, c->points, groups, mask, walk, values);
 }
 
 TC_NOINLINE void tc_groups_enter(const TcGatherJob *job, TcGroups *groups, TcMask mask, const TcPacket *walk) {
@@ -156,8 +174,9 @@ TC_INLINE void tc_groups_in(const TcCoefficients *c, TcGroups *groups, TcMask ma
 /* What is integrated in the lanes of a vector. */
 typedef struct TcStretch {
   TcMask mask;
-  TcVec length, from, to; /* from, to: what part of the cell it is */
-  TcVec spread_own, spread_range; /* with TC_BOUND: ∫ |error of f| dt is at most |f| times the one plus the range of f times the other */
+  TcVec length, from, to;         /* from, to: what part of the cell it is */
+  TcVec spread_own, spread_range; /* with TC_BOUND: ∫ |error of f| dt is at most |f| times the one plus the range of f
+                                     times the other */
 } TcStretch;
 
 /* A value at both ends, and the bound on its error. */
@@ -165,8 +184,10 @@ typedef struct TcEnds {
   TcVec near, far, spread;
 } TcEnds;
 
-TC_INLINE TcEnds tc_groups_ends(const unsigned on, const TcGroups *groups, int at, bool same, const TcStretch *stretch) {
-  const TcVec v0 = same ? tc_set(groups->near[at]) : tc_load(groups->near + at), v1 = same ? tc_set(groups->far[at]) : tc_load(groups->far + at);
+TC_INLINE TcEnds tc_groups_ends(const unsigned on, const TcGroups *groups, int at, bool same,
+                                const TcStretch *stretch) {
+  const TcVec v0 = same ? tc_set(groups->near[at]) : tc_load(groups->near + at),
+              v1 = same ? tc_set(groups->far[at]) : tc_load(groups->far + at);
   TcEnds ends = {.near = tc_madd(stretch->from, v1 - v0, v0), .far = tc_madd(stretch->to - 1, v1 - v0, v1)};
   if (on & TC_BOUND) {
     const TcVec range = (same ? tc_set(groups->range[at]) : tc_load(groups->range + at)) + tc_abs(v1 - v0);
@@ -178,7 +199,8 @@ TC_INLINE TcEnds tc_groups_ends(const unsigned on, const TcGroups *groups, int a
 TC_INLINE TcEnds tc_groups_scaled(const unsigned on, TcEnds ends, double scale) {
   ends.near *= scale;
   ends.far *= scale;
-  if (on & TC_BOUND) ends.spread *= scale;
+  if (on & TC_BOUND)
+    ends.spread *= scale;
   return ends;
 }
 
@@ -189,7 +211,8 @@ typedef struct TcAbsorption {
   TcLaneMoments moments;
 } TcAbsorption;
 
-TC_INLINE TcAbsorption tc_groups_absorb(const unsigned on, const TcCoefficients *c, const TcEnds *kappa, const TcStretch *stretch) {
+TC_INLINE TcAbsorption tc_groups_absorb(const unsigned on, const TcCoefficients *c, const TcEnds *kappa,
+                                        const TcStretch *stretch) {
   const TcVec zero = tc_set(0), most = tc_set(TC_LARGEST_EXTINCTION), length = stretch->length;
   TcVec a = tc_min(most, kappa->near * c->scale[0] * c->scale[1]) * length; /* NaN stays NaN */
   TcVec a1 = tc_min(most, kappa->far * c->scale[0] * c->scale[1]) * length;
@@ -197,14 +220,18 @@ TC_INLINE TcAbsorption tc_groups_absorb(const unsigned on, const TcCoefficients 
   a = tc_select(absorption.valid, a, zero);
   a1 = tc_select(absorption.valid, a1, zero);
   absorption.depth = 0.5 * a + 0.5 * a1;
-  if (c->emission_count) absorption.moments = tc_moments(absorption.valid, a, a1);
-  if (on & TC_BOUND) absorption.spread = tc_select(absorption.valid, kappa->spread * c->scale[0] * c->scale[1], zero);
+  if (c->emission_count)
+    absorption.moments = tc_moments(absorption.valid, a, a1);
+  if (on & TC_BOUND)
+    absorption.spread = tc_select(absorption.valid, kappa->spread * c->scale[0] * c->scale[1], zero);
   return absorption;
 }
 
-TC_INLINE void tc_groups_emit(const unsigned on, const TcEnds *emission, const TcAbsorption *absorption, const TcStretch *stretch, TcBeam *beam) {
+TC_INLINE void tc_groups_emit(const unsigned on, const TcEnds *emission, const TcAbsorption *absorption,
+                              const TcStretch *stretch, TcBeam *beam) {
   const TcVec zero = tc_set(0), before = beam->block_transmittance;
-  TcVec radiance = stretch->length * tc_madd(emission->near, absorption->moments.m0, emission->far * absorption->moments.m1);
+  TcVec radiance =
+      stretch->length * tc_madd(emission->near, absorption->moments.m0, emission->far * absorption->moments.m1);
   const TcMask valid = tc_and(absorption->valid, tc_eq(radiance, radiance));
   /* What lies behind the depth at which rays may end counts for nothing, whether they end there or not. */
   const TcMask reached = tc_le(beam->depth + beam->block_depth, tc_set(TC_OPAQUE_DEPTH));
@@ -222,55 +249,65 @@ TC_INLINE void tc_groups_emit(const unsigned on, const TcEnds *emission, const T
 
 TC_INLINE void tc_groups_dim(const unsigned on, const TcAbsorption *absorption, TcBeam *beam) {
   beam->block_depth += absorption->depth;
-  if (on & TC_BOUND) beam->depth_error += absorption->spread;
+  if (on & TC_BOUND)
+    beam->depth_error += absorption->spread;
 }
 
 /* All groups one after the other. An extinction that is that of the group before is not evaluated again. */
-TC_INLINE void tc_groups_by_group(const unsigned on, const TcCoefficients *c, TcGroups *groups, const TcStretch *stretch) {
+TC_INLINE void tc_groups_by_group(const unsigned on, const TcCoefficients *c, TcGroups *groups,
+                                  const TcStretch *stretch) {
   TcAbsorption absorption;
   for (int g = 0; g < c->groups; ++g) {
     const int extinction = c->slots[g], emission = c->slots[c->groups + g];
     if (g == 0 || extinction != c->slots[g - 1]) {
       TcEnds kappa = {tc_set(0), tc_set(0), tc_set(0)};
-      if (extinction >= 0) kappa = tc_groups_ends(on, groups, extinction * TC_LANES, false, stretch);
+      if (extinction >= 0)
+        kappa = tc_groups_ends(on, groups, extinction * TC_LANES, false, stretch);
       absorption = tc_groups_absorb(on, c, &kappa, stretch);
     }
     if (emission < 0) {
       tc_groups_dim(on, &absorption, &groups->beam[g]);
       continue;
     }
-    const TcEnds ends = tc_groups_scaled(on, tc_groups_ends(on, groups, emission * TC_LANES, false, stretch), c->emission_scale);
+    const TcEnds ends =
+        tc_groups_scaled(on, tc_groups_ends(on, groups, emission * TC_LANES, false, stretch), c->emission_scale);
     tc_groups_emit(on, &ends, &absorption, stretch, &groups->beam[g]);
   }
 }
 
 /* Ray `l`: blocks of groups. */
-TC_INLINE void tc_groups_of_ray(const unsigned on, const TcCoefficients *c, TcGroups *groups, int l, const TcStretch *stretch) {
+TC_INLINE void tc_groups_of_ray(const unsigned on, const TcCoefficients *c, TcGroups *groups, int l,
+                                const TcStretch *stretch) {
   const int extinction = c->slots[0], emission = c->slots[c->groups], first = l * groups->columns;
   const bool one_extinction = c->extinction_count == 1, one_emission = c->emission_count == 1;
   for (int block = 0; block < groups->blocks; ++block) {
     const int g = block * TC_LANES;
     TcBeam *beam = &groups->beam[l * groups->blocks + block];
     TcEnds kappa = {tc_set(0), tc_set(0), tc_set(0)};
-    if (extinction >= 0) kappa = tc_groups_ends(on, groups, first + extinction + (one_extinction ? 0 : g), one_extinction, stretch);
+    if (extinction >= 0)
+      kappa = tc_groups_ends(on, groups, first + extinction + (one_extinction ? 0 : g), one_extinction, stretch);
     const TcAbsorption absorption = tc_groups_absorb(on, c, &kappa, stretch);
     if (emission < 0) {
       tc_groups_dim(on, &absorption, beam);
       continue;
     }
-    const TcEnds ends = tc_groups_scaled(on, tc_groups_ends(on, groups, first + emission + (one_emission ? 0 : g), one_emission, stretch),
-                                         c->emission_scale);
+    const TcEnds ends = tc_groups_scaled(
+        on, tc_groups_ends(on, groups, first + emission + (one_emission ? 0 : g), one_emission, stretch),
+        c->emission_scale);
     tc_groups_emit(on, &ends, &absorption, stretch, beam);
   }
 }
 
-TC_INLINE void tc_groups_segment(const unsigned on, const TcGatherJob *job, TcGroups *groups, TcMask mask, const TcPassage *passage) {
+TC_INLINE void tc_groups_segment(const unsigned on, const TcGatherJob *job, TcGroups *groups, TcMask mask,
+                                 const TcPassage *passage) {
   const TcCoefficients *c = job->coefficients;
   tc_groups_at(on, c, groups, passage->crossed, passage->walk, groups->far);
-  if (c->cells) tc_groups_in(c, groups, mask, passage->cell);
+  if (c->cells)
+    tc_groups_in(c, groups, mask, passage->cell);
   tc_length_segment(on, job, &groups->length, mask, passage);
   TcStretch all = {.mask = mask, .length = passage->length, .from = tc_set(0), .to = tc_set(1)};
-  if (TC_UNLIKELY(passage->partial)) all.from = passage->from, all.to = passage->to;
+  if (TC_UNLIKELY(passage->partial))
+    all.from = passage->from, all.to = passage->to;
   if (on & TC_BOUND) {
     all.spread_own = passage->length * job->rounding;
     all.spread_range = passage->spread;
@@ -278,7 +315,10 @@ TC_INLINE void tc_groups_segment(const unsigned on, const TcGatherJob *job, TcGr
   if (groups->by_rays) {
     for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
       const int l = __builtin_ctz(lanes);
-      const TcStretch ray = {.mask = tc_all(), .length = tc_set(TC_AT(all.length, l)), .from = tc_set(TC_AT(all.from, l)), .to = tc_set(TC_AT(all.to, l)),
+      const TcStretch ray = {.mask = tc_all(),
+                             .length = tc_set(TC_AT(all.length, l)),
+                             .from = tc_set(TC_AT(all.from, l)),
+                             .to = tc_set(TC_AT(all.to, l)),
                              .spread_own = on & TC_BOUND ? tc_set(TC_AT(all.spread_own, l)) : tc_set(0),
                              .spread_range = on & TC_BOUND ? tc_set(TC_AT(all.spread_range, l)) : tc_set(0)};
       tc_groups_of_ray(on, c, groups, l, &ray);
@@ -304,8 +344,9 @@ TC_NOINLINE void tc_groups_end_blocks(const TcGatherJob *job, TcGroups *groups) 
 }
 
 /* A number of a beam: of ray l and group g. */
-#define tc_groups_of(groups, l, g, member)                                                                                          \
-  ((groups)->by_rays ? TC_AT((groups)->beam[(l) * (groups)->blocks + (g) / TC_LANES].member, (g) % TC_LANES) : TC_AT((groups)->beam[g].member, l))
+#define tc_groups_of(groups, l, g, member)                                                                             \
+  ((groups)->by_rays ? TC_AT((groups)->beam[(l) * (groups)->blocks + (g) / TC_LANES].member, (g) % TC_LANES)           \
+                     : TC_AT((groups)->beam[g].member, l))
 
 /* Whether all groups are so deep that e^−τ is zero in double precision; looked at now and then. */
 TC_NOINLINE TcMask tc_groups_are_complete(const TcGatherJob *job, TcGroups *groups, TcMask active) {
@@ -313,16 +354,20 @@ TC_NOINLINE TcMask tc_groups_are_complete(const TcGatherJob *job, TcGroups *grou
   for (unsigned lanes = complete; lanes; lanes &= lanes - 1) {
     const int l = __builtin_ctz(lanes);
     for (int g = 0; g < job->coefficients->groups && complete >> l & 1; ++g) {
-      if (!(tc_groups_of(groups, l, g, depth) + tc_groups_of(groups, l, g, block_depth) > TC_OPAQUE_DEPTH)) complete &= ~(1U << l);
+      if (!(tc_groups_of(groups, l, g, depth) + tc_groups_of(groups, l, g, block_depth) > TC_OPAQUE_DEPTH))
+        complete &= ~(1U << l);
     }
   }
   return tc_mask_of(complete);
 }
 
-TC_INLINE TcMask tc_groups_complete(const unsigned on, const TcGatherJob *job, TcGroups *groups, TcMask active, int64_t steps) {
+TC_INLINE TcMask tc_groups_complete(const unsigned on, const TcGatherJob *job, TcGroups *groups, TcMask active,
+                                    int64_t steps) {
   (void)on;
-  if (TC_LIKELY(steps % 16 != 0)) return tc_none();
-  if (steps % 64 == 0) tc_groups_end_blocks(job, groups);
+  if (TC_LIKELY(steps % 16 != 0))
+    return tc_none();
+  if (steps % 64 == 0)
+    tc_groups_end_blocks(job, groups);
   return job->to_the_end ? tc_none() : tc_groups_are_complete(job, groups, active);
 }
 
@@ -330,13 +375,15 @@ TC_INLINE TcMask tc_groups_complete(const unsigned on, const TcGatherJob *job, T
 static double tc_groups_bound(const TcGatherJob *job, const TcGroups *groups, const TcEnding *ending, int l, int g) {
   const TcCoefficients *c = job->coefficients;
   const double rounding = tc_rounding(ending->steps), depth_error = tc_groups_of(groups, l, g, depth_error);
-  const double opacity = depth_error + rounding * -expm1(-tc_groups_of(groups, l, g, depth)), growth = depth_error < 700 ? exp(depth_error) : INFINITY;
+  const double opacity = depth_error + rounding * -expm1(-tc_groups_of(groups, l, g, depth)),
+               growth = depth_error < 700 ? exp(depth_error) : INFINITY;
   const double emitted = tc_groups_of(groups, l, g, emitted) * (1 + rounding) * growth;
   const double radiance = growth * tc_groups_of(groups, l, g, radiance_error) + emitted * (depth_error + rounding);
   return fmax(opacity < 1 ? opacity : 1, c->emission_count ? ldexp(radiance, job->exponent + c->emission_exponent) : 0);
 }
 
-TC_NOINLINE void tc_groups_end(const unsigned on, const TcGatherJob *job, TcGroups *groups, const TcEnding *ending, double (*sums)[TC_LANES]) {
+TC_NOINLINE void tc_groups_end(const unsigned on, const TcGatherJob *job, TcGroups *groups, const TcEnding *ending,
+                               double (*sums)[TC_LANES]) {
   const TcCoefficients *c = job->coefficients;
   const int distinct = c->extinction_count; /* groups whose transmittances are not one and the same */
   tc_groups_end_blocks(job, groups);
@@ -346,12 +393,15 @@ TC_NOINLINE void tc_groups_end(const unsigned on, const TcGatherJob *job, TcGrou
       sums[3 * g][l] = tc_groups_of(groups, l, g, radiance);
       sums[3 * g + 1][l] = tc_groups_of(groups, l, g, depth);
       sums[3 * g + 2][l] = tc_groups_of(groups, l, g, transmittance);
-      if (g < distinct) opacity -= expm1(-sums[3 * g + 1][l]) / distinct;
-      if (on & TC_BOUND) bound = fmax(bound, tc_groups_bound(job, groups, ending, l, g));
+      if (g < distinct)
+        opacity -= expm1(-sums[3 * g + 1][l]) / distinct;
+      if (on & TC_BOUND)
+        bound = fmax(bound, tc_groups_bound(job, groups, ending, l, g));
     }
     sums[3 * c->groups][l] = (double)TC_AT(groups->length.sum, l);
     sums[3 * c->groups + 1][l] = opacity;
-    if (on & TC_BOUND) sums[3 * c->groups + 2][l] = bound;
+    if (on & TC_BOUND)
+      sums[3 * c->groups + 2][l] = bound;
   }
 }
 

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Emission and absorption through a transfer function: ∫ c κ e^−τ dt, exactly, composited front to back in blocks of 64 steps and blocks into the
- * total, so that rounding grows with the block's length plus the number of blocks, not with the number of segments.
+/* Emission and absorption through a transfer function: ∫ c κ e^−τ dt, exactly, composited front to back in blocks of 64
+ * steps and blocks into the total, so that rounding grows with the block's length plus the number of blocks, not with
+ * the number of segments.
  *
- * Without TC_COLORED all that is seen has one colour: the colour is that times the opacity, and what is gathered is the optical depth alone, an
- * integral of a function that is linear in pieces. */
+ * Without TC_COLORED all that is seen has one colour: the colour is that times the opacity, and what is gathered is the
+ * optical depth alone, an integral of a function that is linear in pieces. */
 #ifndef TC_GATHER_EMISSION_H
 #define TC_GATHER_EMISSION_H
 
@@ -15,45 +16,52 @@ typedef struct TcEmission {
   TcVec block_color[3], block_depth, block_transmittance; /* of the block under way */
   TcVec before;                                           /* optical depth of the finished blocks */
   TcLanePieces piece;                                     /* kept from packet to packet */
-  TcVec moved;                                            /* with TC_BOUND: what is off by where rays meet faces; single precision: Σ spread */
-  int parts;                                              /* of the block under way */
+  TcVec moved; /* with TC_BOUND: what is off by where rays meet faces; single precision: Σ spread */
+  int parts;   /* of the block under way */
   _Alignas(64) double color[3][TC_LANES], depth[TC_LANES], transmittance[TC_LANES]; /* of the finished blocks */
 } TcEmission;
 
 TC_INLINE void tc_emission_begin(const TcGatherJob *job, TcEmission *e) {
   (void)job;
-  for (int k = 0; k < 3; ++k) e->block_color[k] = tc_set(0);
+  for (int k = 0; k < 3; ++k)
+    e->block_color[k] = tc_set(0);
   e->block_depth = e->before = tc_set(0);
   e->block_transmittance = tc_set(1);
   e->moved = tc_set(0);
   e->parts = 0;
   memset(e->color, 0, sizeof e->color);
   memset(e->depth, 0, sizeof e->depth);
-  for (int l = 0; l < TC_LANES; ++l) e->transmittance[l] = 1;
+  for (int l = 0; l < TC_LANES; ++l)
+    e->transmittance[l] = 1;
 }
 
 /* In double precision, whatever the block's is. */
 TC_NOINLINE void tc_emission_end_block(const unsigned on, TcEmission *e) {
 #if TC_SINGLE
   TcReal color[3][TC_LANES], depth[TC_LANES];
-  for (int k = 0; k < 3; ++k) tc_store(color[k], e->block_color[k]);
+  for (int k = 0; k < 3; ++k)
+    tc_store(color[k], e->block_color[k]);
   tc_store(depth, e->block_depth);
   for (int l = 0; l < TC_LANES; ++l) {
-    for (int k = 0; k < 3; ++k) e->color[k][l] += e->transmittance[l] * (double)color[k][l];
+    for (int k = 0; k < 3; ++k)
+      e->color[k][l] += e->transmittance[l] * (double)color[k][l];
     e->depth[l] += (double)depth[l];
     TC_AT(e->before, l) = (TcReal)e->depth[l];
-    if (on & TC_COLORED) e->transmittance[l] = exp(-e->depth[l]);
+    if (on & TC_COLORED)
+      e->transmittance[l] = exp(-e->depth[l]);
   }
 #else
   e->before += e->block_depth;
   tc_store(e->depth, e->before);
   if (on & TC_COLORED) {
     const TcVec transmittance = tc_load(e->transmittance);
-    for (int k = 0; k < 3; ++k) tc_store(e->color[k], tc_madd(transmittance, e->block_color[k], tc_load(e->color[k])));
+    for (int k = 0; k < 3; ++k)
+      tc_store(e->color[k], tc_madd(transmittance, e->block_color[k], tc_load(e->color[k])));
     tc_store(e->transmittance, tc_exp(-e->before));
   }
 #endif
-  for (int k = 0; k < 3; ++k) e->block_color[k] = tc_set(0);
+  for (int k = 0; k < 3; ++k)
+    e->block_color[k] = tc_set(0);
   e->block_depth = tc_set(0);
   e->block_transmittance = tc_set(1);
   e->parts = 0;
@@ -69,21 +77,26 @@ TC_INLINE void tc_emission_move(TcEmission *e, TcMask mask, TcVec length, TcVec 
   const TcVec zero = tc_set(0), error = spread / length, change = tc_abs(s1 - s0), twice = spread + spread;
   TcVec moved = spread * piece->steep;
   const TcMask near = tc_or(tc_le(tc_min(s0, s1) - piece->low, error), tc_le(piece->high - tc_max(s0, s1), error));
-  const TcVec over = tc_select(tc_lt(twice, change * length), twice / change, length); /* the length of what is within the error of a knot */
+  const TcVec over = tc_select(tc_lt(twice, change * length), twice / change,
+                               length); /* the length of what is within the error of a knot */
   moved += tc_select(near, over * tc_madd(error, piece->beside, piece->jump), zero);
   e->moved += tc_select(tc_and(mask, tc_lt(zero, length)), moved, zero);
 #endif
 }
 
 /* Parts of segments within the lanes' pieces; of length 0, at `from`, where nothing is to happen. */
-TC_INLINE void tc_emission_part(const unsigned on, TcEmission *e, TcReal thin, TcMask mask, TcVec length, TcVec s0, TcVec s1) {
+TC_INLINE void tc_emission_part(const unsigned on, TcEmission *e, TcReal thin, TcMask mask, TcVec length, TcVec s0,
+                                TcVec s1) {
   const TcLanePieces *piece = &e->piece;
   TcVec near = s0 - piece->from, far = s1 - piece->from;
-  if (on & TC_SCALED) near *= piece->scale, far *= piece->scale;
-  const TcVec a = tc_madd(near, piece->rise, piece->extinction) * length, a1 = tc_madd(far, piece->rise, piece->extinction) * length;
+  if (on & TC_SCALED)
+    near *= piece->scale, far *= piece->scale;
+  const TcVec a = tc_madd(near, piece->rise, piece->extinction) * length,
+              a1 = tc_madd(far, piece->rise, piece->extinction) * length;
   const TcVec half_a = (TcReal)0.5 * a, half_a1 = (TcReal)0.5 * a1, depth = half_a + half_a1;
   e->block_depth += depth;
-  if (!(on & TC_COLORED)) return;
+  if (!(on & TC_COLORED))
+    return;
   const TcSegments segments = tc_segments(mask, a, a1, depth, half_a1 - half_a, thin);
   const TcVec w0 = e->block_transmittance * segments.w0, w1 = e->block_transmittance * segments.w1, sum = w0 + w1;
   const TcVec moment = tc_madd(w0, near, w1 * far);
@@ -93,10 +106,11 @@ TC_INLINE void tc_emission_part(const unsigned on, TcEmission *e, TcReal thin, T
   e->block_transmittance -= sum;
 }
 
-/* Segments of which some are not within their lanes' pieces: part after part. Lengths of parts come from differences of scalars, not of positions
- * along the segment: nothing cancels. */
-TC_NOINLINE void tc_emission_parts(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask, const TcVec *whole_length,
-                                   const TcVec *begin, const TcVec *end, const TcVec *spread) {
+/* Segments of which some are not within their lanes' pieces: part after part. Lengths of parts come from differences of
+ * scalars, not of positions along the segment: nothing cancels. */
+TC_NOINLINE void tc_emission_parts(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask,
+                                   const TcVec *whole_length, const TcVec *begin, const TcVec *end,
+                                   const TcVec *spread) {
   const TcPieces *pieces = job->pieces;
   TcLanePieces *piece = &e->piece;
   const TcVec zero = tc_set(0), length = *whole_length, s0 = *begin, s1 = *end, whole = tc_abs(s1 - s0);
@@ -106,18 +120,23 @@ TC_NOINLINE void tc_emission_parts(const unsigned on, const TcGatherJob *job, Tc
   const TcMask rising = tc_and(up, tc_and(tc_le(piece->low, done), tc_lt(done, piece->high)));
   const TcMask falling = tc_and_not(tc_and(tc_lt(piece->low, done), tc_le(done, piece->high)), up);
   const TcMask misplaced = tc_and_not(mask, tc_or(rising, falling));
-  if (tc_any(misplaced)) tc_pieces_locate(pieces, misplaced, &done, piece);
+  if (tc_any(misplaced))
+    tc_pieces_locate(pieces, misplaced, &done, piece);
   for (;;) {
-    const TcMask crossing = tc_and(mask, tc_or(tc_and(up, tc_lt(piece->high, s1)), tc_and_not(tc_lt(s1, piece->low), up)));
+    const TcMask crossing =
+        tc_and(mask, tc_or(tc_and(up, tc_lt(piece->high, s1)), tc_and_not(tc_lt(s1, piece->low), up)));
     const TcVec to = tc_select(crossing, tc_select(up, piece->high, piece->low), s1);
     const TcVec fraction = tc_select(flat, tc_set(1), tc_abs(to - done) * ratio), part = length * fraction;
-    if (on & TC_BOUND) tc_emission_move(e, mask, part, done, to, *spread * fraction);
+    if (on & TC_BOUND)
+      tc_emission_move(e, mask, part, done, to, *spread * fraction);
     if (tc_any(tc_and(mask, piece->filled))) {
-      if (++e->parts == 64) tc_emission_end_block(on, e);
-      tc_emission_part(on, e, (TcReal)job->tolerance.thin, mask, tc_select(mask, part, zero), tc_select(mask, done, piece->from),
-                       tc_select(mask, to, piece->from));
+      if (++e->parts == 64)
+        tc_emission_end_block(on, e);
+      tc_emission_part(on, e, (TcReal)job->tolerance.thin, mask, tc_select(mask, part, zero),
+                       tc_select(mask, done, piece->from), tc_select(mask, to, piece->from));
     }
-    if (!tc_any(crossing)) return;
+    if (!tc_any(crossing))
+      return;
     const TcInt next = tc_select_int(up, piece->above, piece->below);
     const TcVec number = tc_to_real(next);
     const TcMask valid = tc_and(crossing, tc_and(tc_le(zero, number), tc_le(number, tc_set((TcReal)pieces->count))));
@@ -125,16 +144,20 @@ TC_NOINLINE void tc_emission_parts(const unsigned on, const TcGatherJob *job, Tc
     const TcMask reached = tc_or(tc_and(up, tc_lt(piece->low, s1)), tc_and_not(tc_lt(s1, piece->high), up));
     const TcMask further = tc_or(tc_and(up, tc_lt(piece->high, s1)), tc_and_not(tc_lt(s1, piece->low), up));
     mask = tc_and(tc_and(valid, reached), tc_or(piece->filled, further));
-    if (!tc_any(mask)) return;
+    if (!tc_any(mask))
+      return;
     done = tc_select(mask, tc_select(up, piece->low, piece->high), done);
   }
 }
 
-TC_INLINE void tc_emission_segment(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask, const TcPassage *passage) {
+TC_INLINE void tc_emission_segment(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask,
+                                   const TcPassage *passage) {
   TcLanePieces *piece = &e->piece;
   TcVec s0 = passage->s0, s1 = passage->s1;
-  if (on & TC_CELLS) s0 = s1 = tc_cell_values(job, mask, passage->cell);
-  mask = tc_and(mask, tc_and(tc_eq(s0, s0), tc_eq(s1, s1))); /* NaN is transparent: two faces have all four vertices between them */
+  if (on & TC_CELLS)
+    s0 = s1 = tc_cell_values(job, mask, passage->cell);
+  mask = tc_and(mask, tc_and(tc_eq(s0, s0),
+                             tc_eq(s1, s1))); /* NaN is transparent: two faces have all four vertices between them */
   const TcVec least = tc_min(s0, s1), most = tc_max(s0, s1);
   const TcMask here = tc_and(tc_and(tc_le(piece->low, least), tc_lt(least, piece->high)), tc_le(most, piece->high));
   if (on & TC_CELLS) {
@@ -150,7 +173,8 @@ TC_INLINE void tc_emission_segment(const unsigned on, const TcGatherJob *job, Tc
   } else if (on & TC_BOUND) {
     tc_emission_move(e, mask, passage->length, s0, s1, passage->spread);
   }
-  if (!tc_any(tc_and(mask, piece->filled))) return;
+  if (!tc_any(tc_and(mask, piece->filled)))
+    return;
   const TcVec length = tc_select(mask, passage->length, tc_set(0));
   s0 = tc_select(mask, s0, piece->from);
   if (!(on & TC_CELLS)) {
@@ -158,10 +182,12 @@ TC_INLINE void tc_emission_segment(const unsigned on, const TcGatherJob *job, Tc
     return;
   }
   TcVec near = s0 - piece->from;
-  if (on & TC_SCALED) near *= piece->scale;
+  if (on & TC_SCALED)
+    near *= piece->scale;
   const TcVec depth = tc_madd(near, piece->rise, piece->extinction) * length;
   e->block_depth += depth;
-  if (!(on & TC_COLORED)) return;
+  if (!(on & TC_COLORED))
+    return;
   const TcVec weight = e->block_transmittance * tc_segments_opacity(depth), moment = weight * near;
   for (int k = 0; k < 3; ++k) {
     e->block_color[k] = tc_madd(weight, piece->color[k], tc_madd(moment, piece->color_rise[k], e->block_color[k]));
@@ -169,13 +195,17 @@ TC_INLINE void tc_emission_segment(const unsigned on, const TcGatherJob *job, Tc
   e->block_transmittance -= weight;
 }
 
-/* Lanes that are complete: beyond the tolerance's depth, or so deep that what is left changes no channel by half a unit in the last place. */
-TC_INLINE TcMask tc_emission_complete(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask active, int64_t steps) {
-  if (TC_UNLIKELY(steps % 64 == 0)) tc_emission_end_block(on, e);
+/* Lanes that are complete: beyond the tolerance's depth, or so deep that what is left changes no channel by half a unit
+ * in the last place. */
+TC_INLINE TcMask tc_emission_complete(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask active,
+                                      int64_t steps) {
+  if (TC_UNLIKELY(steps % 64 == 0))
+    tc_emission_end_block(on, e);
   const TcVec depth = e->before + e->block_depth;
   const TcReal opaque = (TcReal)job->tolerance.opaque, nearly = (TcReal)TC_NEARLY_OPAQUE;
   const TcMask near = tc_and(active, tc_gt(depth, tc_set(opaque < nearly ? opaque : nearly)));
-  if (TC_LIKELY(!tc_any(near)) || !(on & TC_COLORED) || TC_SINGLE) return near;
+  if (TC_LIKELY(!tc_any(near)) || !(on & TC_COLORED) || TC_SINGLE)
+    return near;
 #if !TC_SINGLE
   TcMask done = tc_gt(depth, tc_set(nearly));
   const TcVec before = tc_load(e->transmittance), left = before * e->block_transmittance;
@@ -188,7 +218,8 @@ TC_INLINE TcMask tc_emission_complete(const unsigned on, const TcGatherJob *job,
 }
 
 /* Red, green, blue, alpha. */
-TC_INLINE void tc_emission_end(const unsigned on, const TcGatherJob *job, TcEmission *e, const TcEnding *ending, double (*sums)[TC_LANES]) {
+TC_INLINE void tc_emission_end(const unsigned on, const TcGatherJob *job, TcEmission *e, const TcEnding *ending,
+                               double (*sums)[TC_LANES]) {
   tc_emission_end_block(on, e);
 #if TC_SINGLE
   TC_EACH_LANE sums[3][l] = -expm1(-e->depth[l]);
@@ -196,13 +227,18 @@ TC_INLINE void tc_emission_end(const unsigned on, const TcGatherJob *job, TcEmis
   tc_store(sums[3], tc_segments_opacity(e->before));
 #endif
   for (int k = 0; k < 3; ++k) {
-    if (on & TC_COLORED) memcpy(sums[k], e->color[k], sizeof e->color[k]);
-    else TC_EACH_LANE sums[k][l] = sums[3][l] * job->pieces->largest[k];
+    if (on & TC_COLORED)
+      memcpy(sums[k], e->color[k], sizeof e->color[k]);
+    else
+      TC_EACH_LANE sums[k][l] = sums[3][l] * job->pieces->largest[k];
   }
-  if (!(on & TC_BOUND)) return;
+  if (!(on & TC_BOUND))
+    return;
   TC_EACH_LANE {
-    const double moved = (double)TC_AT(e->moved, l) * (TC_SINGLE ? job->tolerance.per_spread : 1) + job->tolerance.per_shift * (double)TC_AT(ending->shift, l);
-    sums[4][l] = tc_tolerance_bound(&job->tolerance, e->depth[l], ending->stopped >> l & 1, sums[3][l], ending->steps, moved);
+    const double moved = (double)TC_AT(e->moved, l) * (TC_SINGLE ? job->tolerance.per_spread : 1) +
+                         job->tolerance.per_shift * (double)TC_AT(ending->shift, l);
+    sums[4][l] =
+        tc_tolerance_bound(&job->tolerance, e->depth[l], ending->stopped >> l & 1, sums[3][l], ending->steps, moved);
   }
 }
 

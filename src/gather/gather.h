@@ -17,11 +17,12 @@
 #if TC_SINGLE
 #define TC_GATHERERS(GATHERER) GATHERER(emission, TcEmission) GATHERER(length, TcLength)
 #elif TC_LANES > 1
-#define TC_GATHERERS(GATHERER) GATHERER(emission, TcEmission) GATHERER(length, TcLength) GATHERER(groups, TcGroups) GATHERER(value, TcValue)
+#define TC_GATHERERS(GATHERER)                                                                                         \
+  GATHERER(emission, TcEmission) GATHERER(length, TcLength) GATHERER(groups, TcGroups) GATHERER(value, TcValue)
 #else
-#define TC_GATHERERS(GATHERER)                                                                                        \
-  GATHERER(emission, TcEmission) GATHERER(length, TcLength) GATHERER(groups, TcGroups) GATHERER(value, TcValue) \
-  GATHERER(sampled, TcSampled)
+#define TC_GATHERERS(GATHERER)                                                                                         \
+  GATHERER(emission, TcEmission)                                                                                       \
+  GATHERER(length, TcLength) GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(sampled, TcSampled)
 #endif
 
 enum {
@@ -38,46 +39,59 @@ typedef union TcGather {
 
 TC_INLINE void tc_gather_begin(const int which, const TcGatherJob *job, TcGather *g) {
   switch (which) {
-#define TC_GATHERER(name, type) \
-  case TC_GATHER_##name: tc_##name##_begin(job, &g->name); break;
+#define TC_GATHERER(name, type)                                                                                        \
+  case TC_GATHER_##name:                                                                                               \
+    tc_##name##_begin(job, &g->name);                                                                                  \
+    break;
     TC_GATHERERS(TC_GATHERER)
 #undef TC_GATHERER
   }
 }
 
-TC_INLINE void tc_gather_enter(const int which, const TcGatherJob *job, TcGather *g, TcMask mask, const TcPacket *walk) {
+TC_INLINE void tc_gather_enter(const int which, const TcGatherJob *job, TcGather *g, TcMask mask,
+                               const TcPacket *walk) {
   (void)job, (void)g, (void)mask, (void)walk; /* not used by all */
   switch (which) {
-#define TC_GATHERER(name, type) \
-  case TC_GATHER_##name: tc_##name##_enter(job, &g->name, mask, walk); break;
+#define TC_GATHERER(name, type)                                                                                        \
+  case TC_GATHER_##name:                                                                                               \
+    tc_##name##_enter(job, &g->name, mask, walk);                                                                      \
+    break;
     TC_GATHERERS(TC_GATHERER)
 #undef TC_GATHERER
   }
 }
 
-TC_INLINE void tc_gather_segment(const int which, const unsigned on, const TcGatherJob *job, TcGather *g, TcMask mask, const TcPassage *passage) {
+TC_INLINE void tc_gather_segment(const int which, const unsigned on, const TcGatherJob *job, TcGather *g, TcMask mask,
+                                 const TcPassage *passage) {
   switch (which) {
-#define TC_GATHERER(name, type) \
-  case TC_GATHER_##name: tc_##name##_segment(on, job, &g->name, mask, passage); break;
+#define TC_GATHERER(name, type)                                                                                        \
+  case TC_GATHER_##name:                                                                                               \
+    tc_##name##_segment(on, job, &g->name, mask, passage);                                                             \
+    break;
     TC_GATHERERS(TC_GATHERER)
 #undef TC_GATHERER
   }
 }
 
-TC_INLINE TcMask tc_gather_complete(const int which, const unsigned on, const TcGatherJob *job, TcGather *g, TcMask active, int64_t steps) {
+TC_INLINE TcMask tc_gather_complete(const int which, const unsigned on, const TcGatherJob *job, TcGather *g,
+                                    TcMask active, int64_t steps) {
   switch (which) {
-#define TC_GATHERER(name, type) \
-  case TC_GATHER_##name: return tc_##name##_complete(on, job, &g->name, active, steps);
+#define TC_GATHERER(name, type)                                                                                        \
+  case TC_GATHER_##name:                                                                                               \
+    return tc_##name##_complete(on, job, &g->name, active, steps);
     TC_GATHERERS(TC_GATHERER)
 #undef TC_GATHERER
   }
   return tc_none();
 }
 
-TC_INLINE void tc_gather_end(const int which, const unsigned on, const TcGatherJob *job, TcGather *g, const TcEnding *ending, double (*sums)[TC_LANES]) {
+TC_INLINE void tc_gather_end(const int which, const unsigned on, const TcGatherJob *job, TcGather *g,
+                             const TcEnding *ending, double (*sums)[TC_LANES]) {
   switch (which) {
-#define TC_GATHERER(name, type) \
-  case TC_GATHER_##name: tc_##name##_end(on, job, &g->name, ending, sums); break;
+#define TC_GATHERER(name, type)                                                                                        \
+  case TC_GATHER_##name:                                                                                               \
+    tc_##name##_end(on, job, &g->name, ending, sums);                                                                  \
+    break;
     TC_GATHERERS(TC_GATHERER)
 #undef TC_GATHERER
   }

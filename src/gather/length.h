@@ -14,19 +14,22 @@ TC_INLINE void tc_length_begin(const TcGatherJob *job, TcLength *length) {
   length->sum = length->rest = tc_set(0);
 }
 
-TC_INLINE void tc_length_segment(const unsigned on, const TcGatherJob *job, TcLength *length, TcMask mask, const TcPassage *passage) {
+TC_INLINE void tc_length_segment(const unsigned on, const TcGatherJob *job, TcLength *length, TcMask mask,
+                                 const TcPassage *passage) {
   (void)on, (void)job;
   const TcVec more = tc_select(mask, passage->length, tc_set(0)) - length->rest, sum = length->sum + more;
   length->rest = (sum - length->sum) - more;
   length->sum = sum;
 }
 
-TC_INLINE void tc_length_end(const unsigned on, const TcGatherJob *job, TcLength *length, const TcEnding *ending, double (*sums)[TC_LANES]) {
+TC_INLINE void tc_length_end(const unsigned on, const TcGatherJob *job, TcLength *length, const TcEnding *ending,
+                             double (*sums)[TC_LANES]) {
   (void)on, (void)job, (void)ending;
-  for (int l = 0; l < TC_LANES; ++l) sums[0][l] = (double)TC_AT(length->sum, l);
+  for (int l = 0; l < TC_LANES; ++l)
+    sums[0][l] = (double)TC_AT(length->sum, l);
 }
 
-#define tc_length_enter(job, length, mask, walk) ((void)0)
+#define tc_length_enter(job, length, mask, walk)           ((void)0)
 #define tc_length_complete(on, job, length, active, steps) tc_none()
 
 #endif

@@ -8,16 +8,16 @@
 
 typedef struct TcLanePieces {
   TcVec low, high, from, extinction, rise, color[3], color_rise[3], scale;
-  TcInt at, above, below; /* the piece's number, the next ones */
-  TcMask filled;          /* lanes whose pieces have any extinction */
+  TcInt at, above, below;    /* the piece's number, the next ones */
+  TcMask filled;             /* lanes whose pieces have any extinction */
   TcVec steep, beside, jump; /* double precision */
 } TcLanePieces;
 
 #if TC_SINGLE
-#define tc_piece_rows(pieces) ((pieces)->rows_f32)
+#define tc_piece_rows(pieces)    ((pieces)->rows_f32)
 #define tc_piece_columns(pieces) ((pieces)->columns_f32)
 #else
-#define tc_piece_rows(pieces) ((pieces)->rows_f64)
+#define tc_piece_rows(pieces)    ((pieces)->rows_f64)
 #define tc_piece_columns(pieces) ((pieces)->columns_f64)
 #endif
 
@@ -58,7 +58,8 @@ TC_INLINE void tc_pieces_load(const TcPieces *pieces, TcInt at, TcLanePieces *pi
   piece->jump = word[TC_PIECE_JUMP];
 }
 
-/* The lanes of `mask` find the pieces where `value` is, at a knot the later: from there a lane whose values fall goes on to the one before at once. */
+/* The lanes of `mask` find the pieces where `value` is, at a knot the later: from there a lane whose values fall goes
+ * on to the one before at once. */
 TC_NOINLINE void tc_pieces_locate(const TcPieces *pieces, TcMask mask, const TcVec *value, TcLanePieces *piece) {
   TcInt at = tc_set_int(0);
   if (pieces->count <= 32) {

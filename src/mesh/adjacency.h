@@ -4,9 +4,9 @@
 
 #include "mesh/mesh.h"
 
-/* A cell in 20 bytes (Aman, Demirci, Güdükbay: Compact tetrahedralization-based acceleration structures for ray tracing, 2022).
- * With three vertices of the face it was entered through, the XOR gives the fourth. Neighbour k is the one across the
- * face opposite the k-th smallest vertex. */
+/* A cell in 20 bytes (Aman, Demirci, Güdükbay: Compact tetrahedralization-based acceleration structures for ray
+ * tracing, 2022). With three vertices of the face it was entered through, the XOR gives the fourth. Neighbour k is the
+ * one across the face opposite the k-th smallest vertex. */
 typedef struct TcCell {
   uint32_t vertex_xor;
   uint32_t neighbor[4]; /* a cell, or TC_SHELL | shell face */
@@ -33,11 +33,12 @@ typedef struct TcAdjacency {
   int64_t nonmanifold;     /* faces of three cells or more; each is a shell face of all of them */
 } TcAdjacency;
 
-/* Which cells meet at which faces. Vertex v of the mesh is rank[v] in the result (NULL: the same), and cells are in ascending order of
- * their ascending vertices: neighbours in memory are neighbours in space when vertices are. Working memory adjacency.c derives: at most
- * 48 bytes per cell, result included. The result does not depend on the number of threads. Cleared on error. */
-TetcastStatus tc_adjacency_build(const TetcastMesh *mesh, const uint32_t *rank, bool keep_vertices, const TetcastProgress *progress,
-                                 TcAdjacency *adjacency);
+/* Which cells meet at which faces. Vertex v of the mesh is rank[v] in the result (NULL: the same), and cells are in
+ * ascending order of their ascending vertices: neighbours in memory are neighbours in space when vertices are. Working
+ * memory adjacency.c derives: at most 48 bytes per cell, result included. The result does not depend on the number of
+ * threads. Cleared on error. */
+TetcastStatus tc_adjacency_build(const TetcastMesh *mesh, const uint32_t *rank, bool keep_vertices,
+                                 const TetcastProgress *progress, TcAdjacency *adjacency);
 /* Frees cells and shell, leaving the vertices. */
 void tc_adjacency_drop_links(TcAdjacency *adjacency);
 void tc_adjacency_clear(TcAdjacency *adjacency);
@@ -45,15 +46,22 @@ void tc_adjacency_clear(TcAdjacency *adjacency);
 /* The four vertices of a cell in ascending order; without branches, which no processor could foresee. */
 static inline void tc_sort4(uint32_t v[4]) {
   uint32_t a = v[0], b = v[1], c = v[2], d = v[3];
-#define TC_SORT2(x, y)                \
-  {                                   \
-    const uint32_t t = x < y ? x : y; \
-    y = x < y ? y : x;                \
-    x = t;                            \
-  }
-  TC_SORT2(a, b) TC_SORT2(c, d) TC_SORT2(a, c) TC_SORT2(b, d) TC_SORT2(b, c)
+#define TC_SORT2(x, y)                                                                                                 \
+  do {                                                                                                                 \
+    const uint32_t t = x < y ? x : y;                                                                                  \
+    y = x < y ? y : x;                                                                                                 \
+    x = t;                                                                                                             \
+  } while (0)
+  TC_SORT2(a, b);
+  TC_SORT2(c, d);
+  TC_SORT2(a, c);
+  TC_SORT2(b, d);
+  TC_SORT2(b, c);
 #undef TC_SORT2
-  v[0] = a, v[1] = b, v[2] = c, v[3] = d;
+  v[0] = a;
+  v[1] = b;
+  v[2] = c;
+  v[3] = d;
 }
 
 #endif

@@ -47,7 +47,8 @@ typedef struct Cutter {
   Scratch *scratch; /* [threads] */
   Block *blocks;
   TcHexahedra hexahedra;
-  uint8_t *ways; /* [cell_count]: 1 + that of a hexahedron that the table cuts, found the first time; 0: any other cell */
+  uint8_t
+      *ways; /* [cell_count]: 1 + that of a hexahedron that the table cuts, found the first time; 0: any other cell */
   TetcastCut *cut;
   atomic_llong first_bad;
   bool writes; /* the second time */
@@ -68,13 +69,16 @@ typedef enum Fault { FINE = 0, NOTHING, BAD_OFFSETS, BAD_NODES, BAD_INDEX, BAD_F
 /* ── memory ── */
 
 static bool reserve(Cutter *cutter, Scratch *scratch, int64_t room) {
-  if (room <= scratch->room) return true;
+  if (room <= scratch->room)
+    return true;
   room = room < 2 * scratch->room ? 2 * scratch->room : room;
   TcTets *pieces = &scratch->pieces;
-  const size_t each = sizeof *pieces->p + sizeof *scratch->weight + sizeof *scratch->edge + sizeof *pieces->tet + 6 * sizeof(uint32_t) + 1;
+  const size_t each = sizeof *pieces->p + sizeof *scratch->weight + sizeof *scratch->edge + sizeof *pieces->tet +
+                      6 * sizeof(uint32_t) + 1;
   tc_release(cutter->context, scratch->memory);
   scratch->room = 0;
-  if (!tc_allocate_array(cutter->context, &scratch->memory, room + 1, each, "cells")) return false;
+  if (!tc_allocate_array(cutter->context, &scratch->memory, room + 1, each, "cells"))
+    return false;
   scratch->room = room;
   const size_t n = (size_t)room + 1;
   char *at = scratch->memory; /* what needs more alignment comes first */
@@ -100,29 +104,33 @@ static const struct {
   unsigned type, nodes;
   TcShapeName shape;
 } straight[] = {
-  {TETCAST_CELL_TETRAHEDRON, 4, TC_TETRAHEDRON},
-  {TETCAST_CELL_VOXEL, 8, TC_HEXAHEDRON},
-  {TETCAST_CELL_HEXAHEDRON, 8, TC_HEXAHEDRON},
-  {TETCAST_CELL_WEDGE, 6, TC_WEDGE},
-  {TETCAST_CELL_PYRAMID, 5, TC_PYRAMID},
-  {TETCAST_CELL_PENTAGONAL_PRISM, 10, TC_PENTAGONAL_PRISM},
-  {TETCAST_CELL_HEXAGONAL_PRISM, 12, TC_HEXAGONAL_PRISM},
+    {TETCAST_CELL_TETRAHEDRON, 4, TC_TETRAHEDRON},
+    {TETCAST_CELL_VOXEL, 8, TC_HEXAHEDRON},
+    {TETCAST_CELL_HEXAHEDRON, 8, TC_HEXAHEDRON},
+    {TETCAST_CELL_WEDGE, 6, TC_WEDGE},
+    {TETCAST_CELL_PYRAMID, 5, TC_PYRAMID},
+    {TETCAST_CELL_PENTAGONAL_PRISM, 10, TC_PENTAGONAL_PRISM},
+    {TETCAST_CELL_HEXAGONAL_PRISM, 12, TC_HEXAGONAL_PRISM},
 };
 
 enum { STRAIGHT = sizeof straight / sizeof *straight };
 
-static unsigned type_of(const Cutter *cutter, int64_t i) { return cutter->desc->types ? cutter->desc->types[i] : (unsigned)cutter->desc->type; }
+static unsigned type_of(const Cutter *cutter, int64_t i) {
+  return cutter->desc->types ? cutter->desc->types[i] : (unsigned)cutter->desc->type;
+}
 
 int64_t tc_cell_nodes(unsigned type) {
   for (int k = 0; k < STRAIGHT; ++k) {
-    if (straight[k].type == type) return straight[k].nodes;
+    if (straight[k].type == type)
+      return straight[k].nodes;
   }
   return tc_is_curved(type) ? tc_curved_nodes(type) : 0;
 }
 
 /* An integer of a packed array, most often of this type. */
 static inline int64_t integer_at(const TetcastArray *array, int64_t stride, int64_t i) {
-  if (array->type != TETCAST_TYPE_INT64) return tc_array_int64(array, stride, i, 0);
+  if (array->type != TETCAST_TYPE_INT64)
+    return tc_array_int64(array, stride, i, 0);
   int64_t value;
   memcpy(&value, (const char *)array->data + i * stride, sizeof value);
   return value;
@@ -143,8 +151,8 @@ static Fault read_nodes(const Cutter *cutter, int64_t i, int64_t begin, int64_t 
   const bool apart = cutter->desc->offsets.count == 0; /* a tuple a cell */
   bool beyond = false;
   for (int64_t k = 0; k < count; ++k) {
-    const int64_t node =
-      apart ? tc_array_int64(nodes, cutter->node_stride, i, (int)k) : tc_array_int64(nodes, cutter->node_stride, begin + k, 0);
+    const int64_t node = apart ? tc_array_int64(nodes, cutter->node_stride, i, (int)k)
+                               : tc_array_int64(nodes, cutter->node_stride, begin + k, 0);
     beyond |= node < 0 || node >= cutter->vertex_count;
     id[k] = (uint32_t)node;
   }
@@ -161,25 +169,32 @@ static int64_t place_of(const uint32_t *id, int64_t count, int64_t vertex) {
   int64_t low = 0, high = count;
   while (low < high) {
     const int64_t middle = low + (high - low) / 2;
-    if (id[middle] < vertex) low = middle + 1;
-    else high = middle;
+    if (id[middle] < vertex)
+      low = middle + 1;
+    else
+      high = middle;
   }
   return low < count && id[low] == vertex ? low : -1;
 }
 
-/* The faces of polyhedron i, whose nodes are in scratch->node, as a shape between its vertices in scratch->pieces.id. */
+/* The faces of polyhedron i, whose nodes are in scratch->node, as a shape between its vertices in scratch->pieces.id.
+ */
 static Fault load_polyhedron(Cutter *cutter, int64_t i, Scratch *scratch, Cell *cell) {
   const TetcastArray *faces = &cutter->desc->faces;
   const int64_t end = faces->count, stride = cutter->face_stride;
-  if (i >= cutter->desc->face_offsets.count) return BAD_FACES;
+  if (i >= cutter->desc->face_offsets.count)
+    return BAD_FACES;
   int64_t at = tc_array_int64(&cutter->desc->face_offsets, cutter->place_stride, i, 0);
-  if (at < 0 || at >= end) return BAD_FACES;
+  if (at < 0 || at >= end)
+    return BAD_FACES;
   const int64_t count = tc_array_int64(faces, stride, at++, 0), begin = at;
-  if (count < 4 || count > end) return BAD_FACES;
+  if (count < 4 || count > end)
+    return BAD_FACES;
   int64_t corners = 0;
   for (int64_t face = 0; face < count; ++face) {
     const int64_t size = at < end ? tc_array_int64(faces, stride, at, 0) : 0;
-    if (size < 3 || size >= end - at) return BAD_FACES;
+    if (size < 3 || size >= end - at)
+      return BAD_FACES;
     corners += size;
     at += size + 1;
   }
@@ -187,13 +202,15 @@ static Fault load_polyhedron(Cutter *cutter, int64_t i, Scratch *scratch, Cell *
   if (room > scratch->room) { /* what was read is lost */
     int64_t first, nodes;
     find_nodes(cutter, i, &first, &nodes);
-    if (!reserve(cutter, scratch, room)) return NO_MEMORY;
+    if (!reserve(cutter, scratch, room))
+      return NO_MEMORY;
     read_nodes(cutter, i, first, nodes, scratch->node);
   }
   uint32_t *id = scratch->pieces.id, unique = 0;
   qsort(scratch->node, (size_t)cell->nodes, sizeof *scratch->node, compare_ids);
   for (int64_t k = 0; k < cell->nodes; ++k) {
-    if (k == 0 || scratch->node[k] != id[unique - 1]) id[unique++] = scratch->node[k];
+    if (k == 0 || scratch->node[k] != id[unique - 1])
+      id[unique++] = scratch->node[k];
   }
   at = begin;
   for (int64_t face = 0, corner = 0; face < count; ++face) {
@@ -201,12 +218,17 @@ static Fault load_polyhedron(Cutter *cutter, int64_t i, Scratch *scratch, Cell *
     scratch->size[face] = (uint32_t)size;
     for (int64_t k = 0; k < size; ++k) {
       const int64_t place = place_of(id, unique, tc_array_int64(faces, stride, at++, 0));
-      if (place < 0) return BAD_FACES;
+      if (place < 0)
+        return BAD_FACES;
       scratch->corner[corner++] = (uint32_t)place;
     }
   }
-  cell->shape = (TcShape){.corners = unique, .faces = (uint32_t)count, .size = scratch->size, .corner = scratch->corner,
-                          .either_way = true, .turned = scratch->turned};
+  cell->shape = (TcShape){.corners = unique,
+                          .faces = (uint32_t)count,
+                          .size = scratch->size,
+                          .corner = scratch->corner,
+                          .either_way = true,
+                          .turned = scratch->turned};
   cell->open = !tc_orient_faces(&cell->shape, scratch->edge, scratch->link);
   return FINE;
 }
@@ -215,12 +237,15 @@ static Fault load_curved(Cutter *cutter, int64_t i, int64_t begin, Scratch *scra
   const TetcastCellsDesc *desc = cutter->desc;
   double order[3];
   const int64_t stride = tc_array_stride(&desc->orders, 3);
-  for (int k = 0; k < 3 && i < desc->orders.count; ++k) order[k] = tc_array_double(&desc->orders, stride, i, k);
+  for (int k = 0; k < 3 && i < desc->orders.count; ++k)
+    order[k] = tc_array_double(&desc->orders, stride, i, k);
   /* What says nothing is not given: files have zeros for cells of a fixed order. */
   const bool given = i < desc->orders.count && order[0] >= 1;
-  if (!tc_lattice_make(cell->type, cell->nodes, given ? order : NULL, desc->subdivision, &cell->lattice)) return BAD_NODES;
+  if (!tc_lattice_make(cell->type, cell->nodes, given ? order : NULL, desc->subdivision, &cell->lattice))
+    return BAD_NODES;
   const int64_t size = tc_lattice_size(&cell->lattice);
-  if (!reserve(cutter, scratch, size > cell->lattice.nodes ? size : cell->lattice.nodes)) return NO_MEMORY;
+  if (!reserve(cutter, scratch, size > cell->lattice.nodes ? size : cell->lattice.nodes))
+    return NO_MEMORY;
   const Fault fault = read_nodes(cutter, i, begin, cell->lattice.nodes, scratch->node);
   cell->collapsed = tc_has_twice(scratch->node, tc_shape(cell->lattice.shape)->corners);
   return fault;
@@ -246,26 +271,34 @@ static Fault load(Cutter *cutter, int64_t i, Scratch *scratch, Cell *cell) {
   const TetcastCellsDesc *desc = cutter->desc;
   const unsigned type = type_of(cutter, i);
   int k = 0;
-  while (k < STRAIGHT && straight[k].type != type) ++k;
+  while (k < STRAIGHT && straight[k].type != type)
+    ++k;
   *cell = (Cell){.index = i, .type = type, .curved = k == STRAIGHT && tc_is_curved(type)};
-  if (k == STRAIGHT && !cell->curved && type != TETCAST_CELL_POLYHEDRON) return NOTHING;
-  if (desc->hidden && (desc->hidden[i] & desc->hidden_bits)) return NOTHING;
+  if (k == STRAIGHT && !cell->curved && type != TETCAST_CELL_POLYHEDRON)
+    return NOTHING;
+  if (desc->hidden && (desc->hidden[i] & desc->hidden_bits))
+    return NOTHING;
   const int64_t needed = tc_cell_nodes(type);
   int64_t begin = 0;
   cell->nodes = needed;
-  if (desc->offsets.count && !find_nodes(cutter, i, &begin, &cell->nodes)) return BAD_OFFSETS;
-  if (cell->nodes < needed) return BAD_NODES;
+  if (desc->offsets.count && !find_nodes(cutter, i, &begin, &cell->nodes))
+    return BAD_OFFSETS;
+  if (cell->nodes < needed)
+    return BAD_NODES;
   cell->oversized = needed && cell->nodes > needed;
-  if (cell->curved) return load_curved(cutter, i, begin, scratch, cell);
+  if (cell->curved)
+    return load_curved(cutter, i, begin, scratch, cell);
   if (k == STRAIGHT) {
-    if (!reserve(cutter, scratch, cell->nodes)) return NO_MEMORY;
+    if (!reserve(cutter, scratch, cell->nodes))
+      return NO_MEMORY;
     const Fault fault = read_nodes(cutter, i, begin, cell->nodes, scratch->node);
     return fault ? fault : load_polyhedron(cutter, i, scratch, cell);
   }
   cell->shape = *tc_shape(straight[k].shape);
   uint32_t *id = scratch->pieces.id;
   const Fault fault = read_nodes(cutter, i, begin, needed, id);
-  if (type == TETCAST_CELL_VOXEL) swap_voxel(id);
+  if (type == TETCAST_CELL_VOXEL)
+    swap_voxel(id);
   return fault;
 }
 
@@ -274,23 +307,29 @@ static TetcastStatus report(Cutter *cutter, int64_t i) {
   const Fault fault = load(cutter, i, &cutter->scratch[0], &cell);
   switch (fault) {
   case BAD_OFFSETS:
-    return tc_error(cutter->context, TETCAST_ERROR_DATA, "cell %" PRId64 ": its offsets are descending or beyond the end of the list of nodes", i);
+    return tc_error(cutter->context, TETCAST_ERROR_DATA,
+                    "cell %" PRId64 ": its offsets are descending or beyond the end of the list of nodes", i);
   case BAD_NODES:
-    return tc_error(cutter->context, TETCAST_ERROR_DATA, "cell %" PRId64 ": %" PRId64 " nodes don't make a cell of type %u", i,
-                    cell.nodes, cell.type);
+    return tc_error(cutter->context, TETCAST_ERROR_DATA,
+                    "cell %" PRId64 ": %" PRId64 " nodes don't make a cell of type %u", i, cell.nodes, cell.type);
   case BAD_INDEX:
-    return tc_error(cutter->context, TETCAST_ERROR_DATA, "cell %" PRId64 " names a vertex out of range: there are %" PRId64, i,
-                    cutter->vertex_count);
-  case BAD_FACES: return tc_error(cutter->context, TETCAST_ERROR_DATA, "cell %" PRId64 ": the list of the polyhedron's faces is damaged", i);
-  default: return TETCAST_ERROR_MEMORY; /* has been reported */
+    return tc_error(cutter->context, TETCAST_ERROR_DATA,
+                    "cell %" PRId64 " names a vertex out of range: there are %" PRId64, i, cutter->vertex_count);
+  case BAD_FACES:
+    return tc_error(cutter->context, TETCAST_ERROR_DATA,
+                    "cell %" PRId64 ": the list of the polyhedron's faces is damaged", i);
+  default:
+    return TETCAST_ERROR_MEMORY; /* has been reported */
   }
 }
 
 /* ── vertices on the lattices of curved cells ── */
 
 static void position(const Cutter *cutter, uint32_t id, double p[3]) {
-  if (id < cutter->vertex_count) tc_mesh_vertex(&cutter->mesh, id, p);
-  else memcpy(p, cutter->cut->points.p[id - cutter->vertex_count], 3 * sizeof *p);
+  if (id < cutter->vertex_count)
+    tc_mesh_vertex(&cutter->mesh, id, p);
+  else
+    memcpy(p, cutter->cut->points.p[id - cutter->vertex_count], 3 * sizeof *p);
 }
 
 /* Appends the point to those added. */
@@ -300,7 +339,8 @@ static bool add_point(Cutter *cutter, const Cell *cell, const int at[3], const T
   TcPoints *points = &cutter->cut->points;
   if (points->count == points->point_room || points->entries + lattice->nodes > points->entry_room) {
     const int64_t count = points->count + 1, entries = points->entries + lattice->nodes;
-    if (!tc_points_reserve(points, 2 * count, 2 * entries)) return false;
+    if (!tc_points_reserve(points, 2 * count, 2 * entries))
+      return false;
   }
   tc_lattice_weights(lattice, at, scratch->weight);
   double sum = 0, p[3] = {0, 0, 0}, first[3];
@@ -311,8 +351,10 @@ static bool add_point(Cutter *cutter, const Cell *cell, const int at[3], const T
   for (int k = 0; k < lattice->nodes; ++k) {
     const uint32_t node = scratch->node[k];
     double w = scratch->weight[k];
-    if (w == 0) continue;
-    if (lattice->bezier && desc->rational.count) w *= tc_array_double(&desc->rational, tc_array_stride(&desc->rational, 1), node, 0);
+    if (w == 0)
+      continue;
+    if (lattice->bezier && desc->rational.count)
+      w *= tc_array_double(&desc->rational, tc_array_stride(&desc->rational, 1), node, 0);
     source[entries] = node;
     weight[entries++] = w;
     sum += w;
@@ -321,9 +363,11 @@ static bool add_point(Cutter *cutter, const Cell *cell, const int at[3], const T
     double q[3];
     tc_mesh_vertex(&cutter->mesh, source[k], q);
     weight[k] /= sum; /* is 1 but for rational cells and rounding */
-    for (int c = 0; c < 3; ++c) p[c] += weight[k] * (q[c] - first[c]);
+    for (int c = 0; c < 3; ++c)
+      p[c] += weight[k] * (q[c] - first[c]);
   }
-  for (int c = 0; c < 3; ++c) p[c] += first[c];
+  for (int c = 0; c < 3; ++c)
+    p[c] += first[c];
   return tc_points_add(points, key, p, entries);
 }
 
@@ -332,23 +376,30 @@ static TetcastStatus add_lattices(Cutter *cutter) {
   Scratch *scratch = &cutter->scratch[0];
   TcPoints *points = &cutter->cut->points;
   bool curved[256];
-  for (unsigned type = 0; type < 256; ++type) curved[type] = tc_is_curved(type);
+  for (unsigned type = 0; type < 256; ++type)
+    curved[type] = tc_is_curved(type);
   for (int64_t i = 0; i < cutter->cell_count; ++i) {
-    if (!curved[type_of(cutter, i) & 255]) continue;
+    if (!curved[type_of(cutter, i) & 255])
+      continue;
     Cell cell;
     const Fault fault = load(cutter, i, scratch, &cell);
-    if (fault == NOTHING) continue;
-    if (fault) return report(cutter, i);
+    if (fault == NOTHING)
+      continue;
+    if (fault)
+      return report(cutter, i);
     int at[3] = {-1, 0, 0};
     while (tc_lattice_next(&cell.lattice, at)) {
       if (node_at(&cell, at, scratch->node) >= 0)
         continue;
       const TcPointKey key = tc_lattice_key(&cell.lattice, at, scratch->node, i);
-      if (tc_points_find(points, &key) >= 0) continue;
+      if (tc_points_find(points, &key) >= 0)
+        continue;
       if (cutter->vertex_count + points->count >= TC_MAX_COUNT) {
-        return tc_error(cutter->context, TETCAST_ERROR_LIMIT, "subdividing curved cells makes more than %d vertices", (int)TC_MAX_COUNT);
+        return tc_error(cutter->context, TETCAST_ERROR_LIMIT, "subdividing curved cells makes more than %d vertices",
+                        (int)TC_MAX_COUNT);
       }
-      if (!add_point(cutter, &cell, at, &key, scratch)) return TETCAST_ERROR_MEMORY;
+      if (!add_point(cutter, &cell, at, &key, scratch))
+        return TETCAST_ERROR_MEMORY;
     }
   }
   return TETCAST_OK;
@@ -358,14 +409,16 @@ static TetcastStatus add_lattices(Cutter *cutter) {
 
 /* The entries of a vertex among those added: itself, or what it is made of. */
 static int64_t entries_of(const Cutter *cutter, uint32_t id) {
-  if (id < cutter->vertex_count) return 1;
+  if (id < cutter->vertex_count)
+    return 1;
   const int64_t *start = cutter->cut->points.start + (id - cutter->vertex_count);
   return start[1] - start[0];
 }
 
 static void write_centre(Cutter *cutter, const TcShape *shape, const TcTets *pieces, int64_t index, int64_t entry) {
   TcPoints *points = &cutter->cut->points;
-  if (index > points->count) points->start[index] = entry; /* the first has it already, and may be looked at by others */
+  if (index > points->count)
+    points->start[index] = entry; /* the first has it already, and may be looked at by others */
   for (uint32_t k = 0; k < shape->corners; ++k) {
     const uint32_t id = pieces->id[k];
     if (id < cutter->vertex_count) {
@@ -405,10 +458,12 @@ static void emit(Cutter *cutter, const TcShape *shape, TcTets *pieces, int64_t c
   }
   tc_cut_shape(shape, pieces);
   int64_t entries = 0;
-  for (uint32_t k = 0; pieces->centred && k < shape->corners; ++k) entries += entries_of(cutter, pieces->id[k]);
+  for (uint32_t k = 0; pieces->centred && k < shape->corners; ++k)
+    entries += entries_of(cutter, pieces->id[k]);
   if (cutter->writes) {
     TetcastCut *cut = cutter->cut;
-    if (pieces->centred) write_centre(cutter, shape, pieces, block->centres, block->entries);
+    if (pieces->centred)
+      write_centre(cutter, shape, pieces, block->centres, block->entries);
     const uint32_t centre = (uint32_t)(cutter->vertex_count + block->centres);
     for (int64_t t = 0; t < pieces->count; ++t) {
       int32_t *to = cut->tetrahedra[block->tetrahedra + t];
@@ -416,7 +471,8 @@ static void emit(Cutter *cutter, const TcShape *shape, TcTets *pieces, int64_t c
         const uint32_t corner = pieces->tet[t][k];
         to[k] = (int32_t)(corner < shape->corners ? pieces->id[corner] : centre);
       }
-      if (cut->sources) cut->sources[block->tetrahedra + t] = (int32_t)cell;
+      if (cut->sources)
+        cut->sources[block->tetrahedra + t] = (int32_t)cell;
     }
   }
   block->tetrahedra += pieces->count;
@@ -437,7 +493,8 @@ static void cut_part(void *user, TcShapeName name, const uint32_t *points) {
   Curved *curved = user;
   const TcShape *shape = tc_shape(name);
   TcTets *pieces = &curved->scratch->pieces;
-  for (uint32_t k = 0; k < shape->corners; ++k) pieces->id[k] = curved->scratch->point[points[k]];
+  for (uint32_t k = 0; k < shape->corners; ++k)
+    pieces->id[k] = curved->scratch->point[points[k]];
   emit(curved->cutter, shape, pieces, curved->cell, curved->block);
   curved->positive += pieces->positive;
   curved->negative += pieces->negative;
@@ -474,9 +531,12 @@ static void cut_cell(Cutter *cutter, const Cell *cell, Scratch *scratch, Block *
   TcTets *pieces = &scratch->pieces;
   pieces->exponent = cell->curved ? unit_of(cutter, scratch->node, cell->lattice.nodes)
                                   : unit_of(cutter, pieces->id, cell->shape.corners);
-  if (cell->curved) cut_curved(cutter, cell, scratch, block);
-  else emit(cutter, &cell->shape, pieces, cell->index, block);
-  if (cutter->writes) return;
+  if (cell->curved)
+    cut_curved(cutter, cell, scratch, block);
+  else
+    emit(cutter, &cell->shape, pieces, cell->index, block);
+  if (cutter->writes)
+    return;
   const TcShape *shape = cell->curved ? tc_shape(cell->lattice.shape) : &cell->shape;
   TetcastCutInfo *info = &block->info;
   ++info->cells;
@@ -496,14 +556,17 @@ static inline bool read_hexahedron(const Cutter *cutter, int64_t i, uint32_t id[
   const TetcastCellsDesc *desc = cutter->desc;
   const TetcastArray *nodes = &desc->connectivity;
   int64_t begin = 0, count = 8, stride = cutter->node_stride;
-  if (desc->hidden && (desc->hidden[i] & desc->hidden_bits)) return false;
+  if (desc->hidden && (desc->hidden[i] & desc->hidden_bits))
+    return false;
   if (desc->offsets.count) {
-    if (!find_nodes(cutter, i, &begin, &count) || count != 8) return false;
+    if (!find_nodes(cutter, i, &begin, &count) || count != 8)
+      return false;
   } else {
     begin = i;
   }
   const char *at = (const char *)nodes->data + begin * stride;
-  if (!desc->offsets.count) stride = (int64_t)tc_type_size(nodes->type);
+  if (!desc->offsets.count)
+    stride = (int64_t)tc_type_size(nodes->type);
   uint64_t largest = 0;
   if (nodes->type == TETCAST_TYPE_INT64) {
     for (int k = 0; k < 8; ++k) {
@@ -520,11 +583,13 @@ static inline bool read_hexahedron(const Cutter *cutter, int64_t i, uint32_t id[
   } else {
     return false;
   }
-  if (type_of(cutter, i) == TETCAST_CELL_VOXEL) swap_voxel(id);
+  if (type_of(cutter, i) == TETCAST_CELL_VOXEL)
+    swap_voxel(id);
   return largest < (uint64_t)cutter->vertex_count;
 }
 
-/* Counts those of the cells [begin, end) that the table cuts. First their vertices are asked for, so that memory is waited for once. */
+/* Counts those of the cells [begin, end) that the table cuts. First their vertices are asked for, so that memory is
+ * waited for once. */
 static void count_hexahedra(Cutter *cutter, int64_t begin, int64_t end, Block *block) {
   uint32_t id[BATCH][8];
   int way[BATCH];
@@ -532,15 +597,18 @@ static void count_hexahedra(Cutter *cutter, int64_t begin, int64_t end, Block *b
   int n = 0;
   for (int64_t i = begin; i < end; ++i) {
     const unsigned type = type_of(cutter, i);
-    if ((type != TETCAST_CELL_HEXAHEDRON && type != TETCAST_CELL_VOXEL) || !read_hexahedron(cutter, i, id[n])) continue;
-    for (int k = 0; k < 8; ++k) __builtin_prefetch((const char *)cutter->mesh.vertices.data + id[n][k] * cutter->mesh.vertices.stride);
+    if ((type != TETCAST_CELL_HEXAHEDRON && type != TETCAST_CELL_VOXEL) || !read_hexahedron(cutter, i, id[n]))
+      continue;
+    for (int k = 0; k < 8; ++k)
+      __builtin_prefetch((const char *)cutter->mesh.vertices.data + id[n][k] * cutter->mesh.vertices.stride);
     way[n] = tc_hexahedra_find(&cutter->hexahedra, id[n]);
     at[n] = i;
     ++n;
   }
   for (int m = 0; m < n; ++m) {
     double p[8][3];
-    for (int k = 0; k < 8; ++k) tc_mesh_vertex(&cutter->mesh, id[m][k], p[k]);
+    for (int k = 0; k < 8; ++k)
+      tc_mesh_vertex(&cutter->mesh, id[m][k], p[k]);
     const bool fits = tc_hexahedra_fits(&cutter->hexahedra, way[m], (const double(*)[3])p);
     cutter->ways[at[m]] = (uint8_t)(fits ? 1 + way[m] : 0);
     block->tetrahedra += fits ? cutter->hexahedra.count[way[m]] : 0;
@@ -556,9 +624,11 @@ static void write_hexahedron(const Cutter *cutter, int64_t i, Block *block) {
   for (int t = 0; t < count; ++t) {
     int32_t *to = cut->tetrahedra[block->tetrahedra + t];
     const uint8_t *corner = cutter->hexahedra.tet[way][t];
-    for (int k = 0; k < 4; ++k) to[k] = (int32_t)id[corner[k]];
+    for (int k = 0; k < 4; ++k)
+      to[k] = (int32_t)id[corner[k]];
   }
-  for (int t = 0; cut->sources && t < count; ++t) cut->sources[block->tetrahedra + t] = (int32_t)i;
+  for (int t = 0; cut->sources && t < count; ++t)
+    cut->sources[block->tetrahedra + t] = (int32_t)i;
   block->tetrahedra += count;
 }
 
@@ -567,17 +637,21 @@ static bool cut_block(void *data, int64_t begin, int64_t end, int worker) {
   Scratch *scratch = &cutter->scratch[worker];
   Block block = cutter->blocks[begin / GRAIN];
   for (int64_t i = begin; i < end; ++i) {
-    if (!cutter->writes && (i - begin) % BATCH == 0) count_hexahedra(cutter, i, i + BATCH < end ? i + BATCH : end, &block);
+    if (!cutter->writes && (i - begin) % BATCH == 0)
+      count_hexahedra(cutter, i, i + BATCH < end ? i + BATCH : end, &block);
     if (cutter->ways[i]) {
-      if (cutter->writes) write_hexahedron(cutter, i, &block);
+      if (cutter->writes)
+        write_hexahedron(cutter, i, &block);
       continue;
     }
     Cell cell;
     const Fault fault = load(cutter, i, scratch, &cell);
-    if (fault == NOTHING) continue;
+    if (fault == NOTHING)
+      continue;
     if (fault) {
       long long first = atomic_load(&cutter->first_bad);
-      while (i < first && !atomic_compare_exchange_weak(&cutter->first_bad, &first, i)) continue;
+      while (i < first && !atomic_compare_exchange_weak(&cutter->first_bad, &first, i))
+        continue;
       return fault != NO_MEMORY;
     }
     cut_cell(cutter, &cell, scratch, &block);
@@ -598,8 +672,10 @@ static void add_info(TetcastCutInfo *sum, const TetcastCutInfo *part) {
   sum->open += part->open;
   sum->empty += part->empty;
   sum->oversized += part->oversized;
-  if (part->segments[0] && (!sum->segments[0] || part->segments[0] < sum->segments[0])) sum->segments[0] = part->segments[0];
-  if (part->segments[1] > sum->segments[1]) sum->segments[1] = part->segments[1];
+  if (part->segments[0] && (!sum->segments[0] || part->segments[0] < sum->segments[0]))
+    sum->segments[0] = part->segments[0];
+  if (part->segments[1] > sum->segments[1])
+    sum->segments[1] = part->segments[1];
 }
 
 /* Turns the blocks' counts into where they begin, and gets the memory. */
@@ -619,14 +695,17 @@ static TetcastStatus lay_out(Cutter *cutter) {
   cut->info.added_vertices = next.centres;
   if (next.tetrahedra > TC_MAX_COUNT || cutter->vertex_count + next.centres > TC_MAX_COUNT) {
     return tc_error(cutter->context, TETCAST_ERROR_LIMIT,
-                    "cutting the cells makes %" PRId64 " tetrahedra of %" PRId64 " vertices: at most %d of each can be held",
+                    "cutting the cells makes %" PRId64 " tetrahedra of %" PRId64
+                    " vertices: at most %d of each can be held",
                     next.tetrahedra, cutter->vertex_count + next.centres, (int)TC_MAX_COUNT);
   }
-  if (!tc_points_reserve(points, next.centres, next.entries)) return TETCAST_ERROR_MEMORY;
+  if (!tc_points_reserve(points, next.centres, next.entries))
+    return TETCAST_ERROR_MEMORY;
   points->start[next.centres] = next.entries;
-  if (!tc_allocate_array(cutter->context, (void **)&cut->tetrahedra, next.tetrahedra, sizeof *cut->tetrahedra, "tetrahedra") ||
-      (cutter->desc->sources &&
-       !tc_allocate_array(cutter->context, (void **)&cut->sources, next.tetrahedra, sizeof *cut->sources, "tetrahedra's cells"))) {
+  if (!tc_allocate_array(cutter->context, (void **)&cut->tetrahedra, next.tetrahedra, sizeof *cut->tetrahedra,
+                         "tetrahedra") ||
+      (cutter->desc->sources && !tc_allocate_array(cutter->context, (void **)&cut->sources, next.tetrahedra,
+                                                   sizeof *cut->sources, "tetrahedra's cells"))) {
     return TETCAST_ERROR_MEMORY;
   }
   return TETCAST_OK;
@@ -635,28 +714,36 @@ static TetcastStatus lay_out(Cutter *cutter) {
 static TetcastStatus pass(Cutter *cutter) {
   atomic_init(&cutter->first_bad, INT64_MAX);
   const TetcastStatus status = tc_parallel_for(cutter->context, cutter->cell_count, GRAIN, cut_block, cutter, NULL);
-  if (status) return TETCAST_ERROR_MEMORY;
+  if (status)
+    return TETCAST_ERROR_MEMORY;
   return cutter->first_bad < INT64_MAX ? report(cutter, cutter->first_bad) : TETCAST_OK;
 }
 
 static TetcastStatus run(Cutter *cutter, int threads) {
   TetcastContext *context = cutter->context;
   const int64_t blocks = (cutter->cell_count + GRAIN - 1) / GRAIN;
-  if (!tc_allocate_array(context, (void **)&cutter->scratch, threads, sizeof *cutter->scratch, "cells")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&cutter->scratch, threads, sizeof *cutter->scratch, "cells"))
+    return TETCAST_ERROR_MEMORY;
   memset(cutter->scratch, 0, (size_t)threads * sizeof *cutter->scratch);
   for (int i = 0; i < threads; ++i) {
-    if (!reserve(cutter, &cutter->scratch[i], 64)) return TETCAST_ERROR_MEMORY;
+    if (!reserve(cutter, &cutter->scratch[i], 64))
+      return TETCAST_ERROR_MEMORY;
   }
-  if (!tc_allocate_array(context, (void **)&cutter->blocks, blocks, sizeof *cutter->blocks, "cells")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&cutter->blocks, blocks, sizeof *cutter->blocks, "cells"))
+    return TETCAST_ERROR_MEMORY;
   memset(cutter->blocks, 0, (size_t)blocks * sizeof *cutter->blocks);
-  if (!tc_allocate_array(context, (void **)&cutter->ways, cutter->cell_count, 1, "cells")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&cutter->ways, cutter->cell_count, 1, "cells"))
+    return TETCAST_ERROR_MEMORY;
   memset(cutter->ways, 0, (size_t)cutter->cell_count);
   tc_hexahedra_make(&cutter->hexahedra);
   TetcastStatus status = add_lattices(cutter);
-  if (!status) status = pass(cutter);
-  if (!status) status = lay_out(cutter);
+  if (!status)
+    status = pass(cutter);
+  if (!status)
+    status = lay_out(cutter);
   cutter->writes = true;
-  if (!status) status = pass(cutter);
+  if (!status)
+    status = pass(cutter);
   if (status)
     return status; /* the lists may lack room for what was counted */
   TcPoints *points = &cutter->cut->points;
@@ -670,22 +757,26 @@ TetcastStatus tc_cells_cut(TetcastContext *context, const TetcastCellsDesc *desc
   Cutter cutter = {.context = context, .desc = desc, .vertex_count = desc->vertices.count};
   cutter.cell_count = desc->offsets.count ? desc->offsets.count - 1 : desc->connectivity.count;
   if (cutter.vertex_count > TC_MAX_COUNT || cutter.cell_count > TC_MAX_COUNT) {
-    return tc_error(context, TETCAST_ERROR_LIMIT, "%" PRId64 " cells of %" PRId64 " vertices: at most %d of each can be held",
-                    cutter.cell_count, cutter.vertex_count, (int)TC_MAX_COUNT);
+    return tc_error(context, TETCAST_ERROR_LIMIT,
+                    "%" PRId64 " cells of %" PRId64 " vertices: at most %d of each can be held", cutter.cell_count,
+                    cutter.vertex_count, (int)TC_MAX_COUNT);
   }
   cutter.mesh.vertices = desc->vertices;
   cutter.mesh.vertices.stride = tc_array_stride(&desc->vertices, 3);
   cutter.offset_stride = tc_array_stride(&desc->offsets, 1);
-  cutter.node_stride = tc_array_stride(&desc->connectivity, desc->offsets.count ? 1 : (int)tc_cell_nodes((unsigned)desc->type));
+  cutter.node_stride =
+      tc_array_stride(&desc->connectivity, desc->offsets.count ? 1 : (int)tc_cell_nodes((unsigned)desc->type));
   cutter.face_stride = tc_array_stride(&desc->faces, 1);
   cutter.place_stride = tc_array_stride(&desc->face_offsets, 1);
   TetcastCut *cut;
-  if (!tc_allocate_array(context, (void **)&cut, 1, sizeof *cut, "cut")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&cut, 1, sizeof *cut, "cut"))
+    return TETCAST_ERROR_MEMORY;
   *cut = (TetcastCut){.context = context, .vertex_count = cutter.vertex_count, .points = {.context = context}};
   cutter.cut = cut;
   const int threads = tc_context_threads(context);
   const TetcastStatus status = run(&cutter, threads);
-  for (int i = 0; cutter.scratch && i < threads; ++i) tc_release(context, cutter.scratch[i].memory);
+  for (int i = 0; cutter.scratch && i < threads; ++i)
+    tc_release(context, cutter.scratch[i].memory);
   tc_release(context, cutter.scratch);
   tc_release(context, cutter.blocks);
   tc_release(context, cutter.ways);
@@ -698,7 +789,8 @@ TetcastStatus tc_cells_cut(TetcastContext *context, const TetcastCellsDesc *desc
 }
 
 void tc_cut_destroy(TetcastCut *cut) {
-  if (!cut) return;
+  if (!cut)
+    return;
   tc_points_clear(&cut->points);
   tc_release(cut->context, cut->tetrahedra);
   tc_release(cut->context, cut->sources);
@@ -710,14 +802,18 @@ TetcastArray tc_cut_tetrahedra(const TetcastCut *cut) {
 }
 
 TetcastArray tc_cut_sources(const TetcastCut *cut) {
-  return (TetcastArray){.data = cut->sources, .type = TETCAST_TYPE_INT32, .count = cut->sources ? cut->info.tetrahedra : 0};
+  return (TetcastArray){
+      .data = cut->sources, .type = TETCAST_TYPE_INT32, .count = cut->sources ? cut->info.tetrahedra : 0};
 }
 
-const TetcastCutInfo *tc_cut_info(const TetcastCut *cut) { return &cut->info; }
+const TetcastCutInfo *tc_cut_info(const TetcastCut *cut) {
+  return &cut->info;
+}
 
 /* Differences to the first source are summed, so that what is constant stays so. */
 bool tc_cut_interpolate(const TetcastCut *cut, const TetcastArray *values, int components, double *result) {
-  if (values->count != cut->vertex_count || components < 1 || !tc_type_size(values->type)) return false;
+  if (values->count != cut->vertex_count || components < 1 || !tc_type_size(values->type))
+    return false;
   const int64_t stride = tc_array_stride(values, components);
   const TcPoints *points = &cut->points;
   for (int64_t i = 0; i < points->count; ++i) {
@@ -725,7 +821,8 @@ bool tc_cut_interpolate(const TetcastCut *cut, const TetcastArray *values, int c
     for (int c = 0; c < components; ++c) {
       const double first = tc_array_double(values, stride, points->source[begin], c);
       double sum = 0;
-      for (int64_t k = begin; k < end; ++k) sum += points->weight[k] * (tc_array_double(values, stride, points->source[k], c) - first);
+      for (int64_t k = begin; k < end; ++k)
+        sum += points->weight[k] * (tc_array_double(values, stride, points->source[k], c) - first);
       result[i * components + c] = first + sum;
     }
   }

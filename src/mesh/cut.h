@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What cutting cells into tetrahedra is made of: one straight cell, the lattice of a curved one, the vertices that are added. */
+/* What cutting cells into tetrahedra is made of: one straight cell, the lattice of a curved one, the vertices that are
+ * added. */
 #ifndef TC_MESH_CUT_H
 #define TC_MESH_CUT_H
 
@@ -46,14 +47,15 @@ enum { TC_FIXED_CORNERS = 12, TC_FIXED_TETS = 20 }; /* the most that a shape wit
 
 /* Memory for a cell and what it is cut into. */
 typedef struct TcTets {
-  uint32_t *id;         /* [corners]: indices of vertices */
-  int exponent;         /* of the unit, a power of two, in which … */
-  double (*p)[3];       /* [corners + 1]: … they are there; the last for the centre */
-  uint32_t (*tet)[4];   /* [corners of all faces]: of places in `id`; `corners` is the centre */
-  int64_t count;        /* of tet */
+  uint32_t *id;       /* [corners]: indices of vertices */
+  int exponent;       /* of the unit, a power of two, in which … */
+  double (*p)[3];     /* [corners + 1]: … they are there; the last for the centre */
+  uint32_t (*tet)[4]; /* [corners of all faces]: of places in `id`; `corners` is the centre */
+  int64_t count;      /* of tet */
   bool centred;
-  double positive, negative; /* six times the volumes of those that are the right way round as the cell came, and of the others */
-  bool flat;                 /* whether one has next to no volume */
+  double positive,
+      negative; /* six times the volumes of those that are the right way round as the cell came, and of the others */
+  bool flat;    /* whether one has next to no volume */
 } TcTets;
 
 /* Cuts the cell at pieces->id and p. */
@@ -66,8 +68,8 @@ int64_t tc_cone_hexahedron(const uint32_t *id, uint32_t first, uint32_t (*tet)[4
 bool tc_is_folded(double positive, double negative);
 bool tc_has_twice(const uint32_t *id, uint32_t count);
 
-/* Makes faces that are given either way round agree with each other, as shape->turned; edge: [corners of all faces], link: [faces].
- * False if an edge has not two faces. */
+/* Makes faces that are given either way round agree with each other, as shape->turned; edge: [corners of all faces],
+ * link: [faces]. False if an edge has not two faces. */
 typedef struct TcEdge {
   uint32_t a, b, face;
   bool backward;
@@ -114,7 +116,8 @@ typedef struct TcPoints {
 /* Room for that many points and entries in all. False after a message. */
 bool tc_points_reserve(TcPoints *points, int64_t count, int64_t entries);
 int64_t tc_points_find(const TcPoints *points, const TcPointKey *key); /* −1 if there is none */
-/* A new point, whose sources and weights the caller appends before, from points->start[points->count] on: `entries` of them. */
+/* A new point, whose sources and weights the caller appends before, from points->start[points->count] on: `entries` of
+ * them. */
 bool tc_points_add(TcPoints *points, const TcPointKey *key, const double p[3], int64_t entries);
 void tc_points_forget_keys(TcPoints *points);
 void tc_points_clear(TcPoints *points);
@@ -134,7 +137,8 @@ enum { TC_MAX_ORDER = 10 };
 
 bool tc_is_curved(unsigned type);
 int tc_curved_nodes(unsigned type); /* 0: any number */
-/* False if a cell of this type can't have that many nodes or this order (NULL: as the number says). `subdivision` as in the description. */
+/* False if a cell of this type can't have that many nodes or this order (NULL: as the number says). `subdivision` as in
+ * the description. */
 bool tc_lattice_make(unsigned type, int64_t nodes, const double order[3], int subdivision, TcLattice *lattice);
 
 /* Points are numbered as if the lattice were a box: (i, j, k) has i + (segments + 1) (j + (segments + 1) k). */

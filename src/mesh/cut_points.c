@@ -7,8 +7,10 @@
 /* Moves `used` things of `size` bytes to room for `count`. */
 static bool move(TetcastContext *context, void **array, int64_t used, int64_t count, size_t size) {
   void *larger;
-  if (!tc_allocate_array(context, &larger, count, size, "added vertices")) return false;
-  if (*array && used) memcpy(larger, *array, (size_t)used * size);
+  if (!tc_allocate_array(context, &larger, count, size, "added vertices"))
+    return false;
+  if (*array && used)
+    memcpy(larger, *array, (size_t)used * size);
   tc_release(context, *array);
   *array = larger;
   return true;
@@ -18,8 +20,10 @@ bool tc_points_reserve(TcPoints *points, int64_t count, int64_t entries) {
   TetcastContext *context = points->context;
   if (count > points->point_room || !points->start) {
     const bool first = !points->start;
-    if (!move(context, (void **)&points->start, points->count + 1, count + 1, sizeof *points->start)) return false;
-    if (first) points->start[0] = 0;
+    if (!move(context, (void **)&points->start, points->count + 1, count + 1, sizeof *points->start))
+      return false;
+    if (first)
+      points->start[0] = 0;
     points->point_room = count;
   }
   if (entries > points->entry_room || !points->source) {
@@ -45,7 +49,8 @@ static uint64_t hash(const TcPointKey *key) {
 static uint32_t *slot_of(const TcPoints *points, const TcPointKey *key) {
   const uint64_t mask = (uint64_t)points->slots - 1;
   uint64_t at = hash(key) & mask;
-  while (points->slot[at] && memcmp(&points->key[points->slot[at] - 1], key, sizeof *key) != 0) at = (at + 1) & mask;
+  while (points->slot[at] && memcmp(&points->key[points->slot[at] - 1], key, sizeof *key) != 0)
+    at = (at + 1) & mask;
   return &points->slot[at];
 }
 
@@ -62,15 +67,18 @@ static bool grow_keys(TcPoints *points) {
   }
   tc_release(points->context, points->slot);
   points->slots = 0;
-  if (!tc_allocate_array(points->context, (void **)&points->slot, slots, sizeof *points->slot, "added vertices")) return false;
+  if (!tc_allocate_array(points->context, (void **)&points->slot, slots, sizeof *points->slot, "added vertices"))
+    return false;
   memset(points->slot, 0, (size_t)slots * sizeof *points->slot);
   points->slots = slots;
-  for (int64_t i = 0; i < points->count; ++i) *slot_of(points, &points->key[i]) = (uint32_t)i + 1;
+  for (int64_t i = 0; i < points->count; ++i)
+    *slot_of(points, &points->key[i]) = (uint32_t)i + 1;
   return true;
 }
 
 bool tc_points_add(TcPoints *points, const TcPointKey *key, const double p[3], int64_t entries) {
-  if (2 * points->count >= points->slots && !grow_keys(points)) return false;
+  if (2 * points->count >= points->slots && !grow_keys(points))
+    return false;
   const int64_t i = points->count++;
   points->entries += entries;
   points->start[i + 1] = points->entries;

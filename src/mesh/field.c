@@ -9,13 +9,14 @@ static atomic_llong fields; /* made so far */
 
 TetcastStatus tc_field_create(TetcastContext *context, const TetcastFieldDesc *desc, TetcastField **out) {
   TetcastField *field;
-  if (!tc_allocate_array(context, (void **)&field, 1, sizeof *field, "field")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&field, 1, sizeof *field, "field"))
+    return TETCAST_ERROR_MEMORY;
   memset(field, 0, sizeof *field);
   field->context = context;
   field->association = desc->association;
   field->serial = atomic_fetch_add(&fields, 1) + 1;
   const TetcastStatus status =
-    tc_array_keep(context, &desc->values, 1, desc->ownership, "field values", &field->values, &field->memory);
+      tc_array_keep(context, &desc->values, 1, desc->ownership, "field values", &field->values, &field->memory);
   if (status) {
     tc_field_destroy(field);
     return status;
@@ -25,14 +26,16 @@ TetcastStatus tc_field_create(TetcastContext *context, const TetcastFieldDesc *d
 }
 
 void tc_field_destroy(TetcastField *field) {
-  if (!field) return;
+  if (!field)
+    return;
   tc_release(field->context, field->memory);
   tc_release(field->context, field);
 }
 
 enum { PIECES = 64 };
 
-/* What a piece of the values holds. Pieces are put together in their order, so that the outcome is that of one loop over all. */
+/* What a piece of the values holds. Pieces are put together in their order, so that the outcome is that of one loop
+ * over all. */
 typedef struct Range {
   double low, high;
   int64_t nonfinite;
@@ -76,5 +79,6 @@ void tc_field_range(const TetcastField *field, double range[2], int64_t *nonfini
     range[0] = all.low <= all.high ? all.low : 0;
     range[1] = all.low <= all.high ? all.high : 0;
   }
-  if (nonfinite_count) *nonfinite_count = all.nonfinite;
+  if (nonfinite_count)
+    *nonfinite_count = all.nonfinite;
 }

@@ -6,7 +6,8 @@
 #include "mesh/adjacency.h"
 
 static void subtract(const double a[3], const double b[3], double d[3]) {
-  for (int k = 0; k < 3; ++k) d[k] = a[k] - b[k];
+  for (int k = 0; k < 3; ++k)
+    d[k] = a[k] - b[k];
 }
 
 static void cross(const double a[3], const double b[3], double c[3]) {
@@ -15,7 +16,9 @@ static void cross(const double a[3], const double b[3], double c[3]) {
   c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 /* A mesh seen in units of its largest coordinate, a power of two: products of coordinates then neither overflow nor,
  * where they matter, underflow. */
@@ -49,7 +52,8 @@ static double signed_volume(const Scaled *mesh, const int64_t v[4]) {
   double p[4][3], e[3][3], n[3];
   for (int k = 0; k < 4; ++k)
     scaled_vertex(mesh, v[k], p[k]);
-  for (int k = 0; k < 3; ++k) subtract(p[k + 1], p[0], e[k]);
+  for (int k = 0; k < 3; ++k)
+    subtract(p[k + 1], p[0], e[k]);
   cross(e[0], e[1], n);
   return dot(n, e[2]) / 6;
 }
@@ -58,7 +62,8 @@ static double triangle_area(const Scaled *mesh, const uint32_t v[3]) {
   double p[3][3], e[2][3], n[3];
   for (int k = 0; k < 3; ++k)
     scaled_vertex(mesh, v[k], p[k]);
-  for (int k = 0; k < 2; ++k) subtract(p[k + 1], p[0], e[k]);
+  for (int k = 0; k < 2; ++k)
+    subtract(p[k + 1], p[0], e[k]);
   cross(e[0], e[1], n);
   return sqrt(dot(n, n)) / 2;
 }
@@ -74,7 +79,8 @@ static TetcastStatus count_components(TetcastContext *context, const TcAdjacency
     memset(seen, 0, (size_t)n);
     *count = 0;
     for (int64_t start = 0; start < n; ++start) {
-      if (seen[start]) continue;
+      if (seen[start])
+        continue;
       ++*count;
       int64_t depth = 0;
       stack[depth++] = (uint32_t)start;
@@ -83,7 +89,8 @@ static TetcastStatus count_components(TetcastContext *context, const TcAdjacency
         const TcCell *cell = &adjacency->cells[stack[--depth]];
         for (int k = 0; k < 4; ++k) {
           const uint32_t next = cell->neighbor[k];
-          if ((next & TC_SHELL) || seen[next]) continue;
+          if ((next & TC_SHELL) || seen[next])
+            continue;
           seen[next] = 1;
           stack[depth++] = next;
         }
@@ -103,7 +110,8 @@ typedef struct Point {
 static int compare_points(const void *left, const void *right) {
   const Point *a = left, *b = right;
   for (int k = 0; k < 3; ++k) {
-    if (a->p[k] != b->p[k]) return a->p[k] < b->p[k] ? -1 : 1;
+    if (a->p[k] != b->p[k])
+      return a->p[k] < b->p[k] ? -1 : 1;
   }
   return 0;
 }
@@ -119,15 +127,18 @@ static TetcastStatus examine_vertices(TetcastContext *context, const TetcastMesh
     for (int64_t i = 0; i < mesh->tetrahedra.count; ++i) {
       int64_t v[4];
       tc_mesh_tetrahedron(mesh, i, v);
-      for (int k = 0; k < 4; ++k) used[v[k]] = 1;
+      for (int k = 0; k < 4; ++k)
+        used[v[k]] = 1;
     }
     size_t count = 0;
     for (int64_t i = 0; i < n; ++i) {
-      if (used[i]) tc_mesh_vertex(mesh, i, points[count++].p);
+      if (used[i])
+        tc_mesh_vertex(mesh, i, points[count++].p);
     }
     health->unused_vertices = n - (int64_t)count;
     qsort(points, count, sizeof *points, compare_points);
-    for (size_t i = 1; i < count; ++i) health->coincident_vertices += compare_points(&points[i], &points[i - 1]) == 0;
+    for (size_t i = 1; i < count; ++i)
+      health->coincident_vertices += compare_points(&points[i], &points[i - 1]) == 0;
     status = TETCAST_OK;
   }
   tc_release(context, used);
@@ -139,7 +150,8 @@ TetcastStatus tc_mesh_health(TetcastContext *context, const TetcastMesh *mesh, T
   memset(health, 0, sizeof *health);
   TcAdjacency adjacency;
   TetcastStatus status = tc_adjacency_build(mesh, NULL, false, NULL, &adjacency);
-  if (status) return status;
+  if (status)
+    return status;
   health->duplicate_cells = adjacency.duplicates;
   health->nonmanifold_faces = adjacency.nonmanifold;
   const Scaled unit = scaled(mesh);
@@ -158,6 +170,7 @@ TetcastStatus tc_mesh_health(TetcastContext *context, const TetcastMesh *mesh, T
   health->boundary_faces = adjacency.boundary;
   status = count_components(context, &adjacency, &health->components);
   tc_adjacency_clear(&adjacency);
-  if (!status) status = examine_vertices(context, mesh, health);
+  if (!status)
+    status = examine_vertices(context, mesh, health);
   return status;
 }

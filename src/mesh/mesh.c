@@ -18,7 +18,8 @@ typedef struct Check {
 
 static void found_bad(Check *check, int64_t i) {
   long long first = atomic_load(&check->first_bad);
-  while (i < first && !atomic_compare_exchange_weak(&check->first_bad, &first, i)) continue;
+  while (i < first && !atomic_compare_exchange_weak(&check->first_bad, &first, i))
+    continue;
 }
 
 static bool check_vertices(void *data, int64_t begin, int64_t end, int worker) {
@@ -27,7 +28,8 @@ static bool check_vertices(void *data, int64_t begin, int64_t end, int worker) {
   for (int64_t i = begin; i < end; ++i) {
     double p[3];
     tc_mesh_vertex(check->mesh, i, p);
-    if (isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2])) continue;
+    if (isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]))
+      continue;
     found_bad(check, i);
     break;
   }
@@ -55,15 +57,16 @@ static bool check_tetrahedra(void *data, int64_t begin, int64_t end, int worker)
 static TetcastStatus report_vertex(const TetcastMesh *mesh, int64_t i) {
   double p[3];
   tc_mesh_vertex(mesh, i, p);
-  return tc_error(mesh->context, TETCAST_ERROR_DATA, "vertex %" PRId64 " has a coordinate that is not finite: (%g, %g, %g)", i,
-                  p[0], p[1], p[2]);
+  return tc_error(mesh->context, TETCAST_ERROR_DATA,
+                  "vertex %" PRId64 " has a coordinate that is not finite: (%g, %g, %g)", i, p[0], p[1], p[2]);
 }
 
 static TetcastStatus report_tetrahedron(const TetcastMesh *mesh, int64_t i) {
   int64_t v[4];
   tc_mesh_tetrahedron(mesh, i, v);
   int k = 0;
-  while (k < 3 && v[k] >= 0 && v[k] < mesh->vertices.count) ++k;
+  while (k < 3 && v[k] >= 0 && v[k] < mesh->vertices.count)
+    ++k;
   return tc_error(mesh->context, TETCAST_ERROR_DATA,
                   "tetrahedron %" PRId64 " names vertex %" PRId64 ", but there are %" PRId64 " vertices", i, v[k],
                   mesh->vertices.count);
@@ -88,7 +91,8 @@ static TetcastStatus check_bounds(const TetcastMesh *mesh) {
 static void take_bounds(TetcastMesh *mesh, const Check *check) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (int64_t i = 0; i < mesh->vertices.count; ++i) {
-    if (!check->used[i]) continue;
+    if (!check->used[i])
+      continue;
     double p[3];
     tc_mesh_vertex(mesh, i, p);
     for (int k = 0; k < 3; ++k) {
@@ -107,34 +111,39 @@ static TetcastStatus examine(TetcastContext *context, TetcastMesh *mesh) {
   Check check = {.mesh = mesh};
   atomic_init(&check.first_bad, INT64_MAX);
   tc_parallel_for(context, mesh->vertices.count, GRAIN, check_vertices, &check, NULL);
-  if (check.first_bad < INT64_MAX) return report_vertex(mesh, check.first_bad);
+  if (check.first_bad < INT64_MAX)
+    return report_vertex(mesh, check.first_bad);
   if (!tc_allocate_array(context, (void **)&check.used, mesh->vertices.count, sizeof *check.used, "mesh")) {
     return TETCAST_ERROR_MEMORY;
   }
   memset((void *)check.used, 0, (size_t)mesh->vertices.count);
   tc_parallel_for(context, mesh->tetrahedra.count, GRAIN, check_tetrahedra, &check, NULL);
   const bool ok = check.first_bad == INT64_MAX;
-  if (ok) take_bounds(mesh, &check);
+  if (ok)
+    take_bounds(mesh, &check);
   tc_release(context, (void *)check.used);
   return ok ? check_bounds(mesh) : report_tetrahedron(mesh, check.first_bad);
 }
 
 TetcastStatus tc_mesh_create(TetcastContext *context, const TetcastMeshDesc *desc, TetcastMesh **out) {
   if (desc->vertices.count > TC_MAX_COUNT || desc->tetrahedra.count > TC_MAX_COUNT) {
-    return tc_error(context, TETCAST_ERROR_LIMIT, "%" PRId64 " vertices and %" PRId64 " tetrahedra: at most %d of each can be held",
+    return tc_error(context, TETCAST_ERROR_LIMIT,
+                    "%" PRId64 " vertices and %" PRId64 " tetrahedra: at most %d of each can be held",
                     desc->vertices.count, desc->tetrahedra.count, (int)TC_MAX_COUNT);
   }
   TetcastMesh *mesh;
-  if (!tc_allocate_array(context, (void **)&mesh, 1, sizeof *mesh, "mesh")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&mesh, 1, sizeof *mesh, "mesh"))
+    return TETCAST_ERROR_MEMORY;
   memset(mesh, 0, sizeof *mesh);
   mesh->context = context;
   TetcastStatus status =
-    tc_array_keep(context, &desc->vertices, 3, desc->ownership, "vertices", &mesh->vertices, &mesh->vertex_memory);
+      tc_array_keep(context, &desc->vertices, 3, desc->ownership, "vertices", &mesh->vertices, &mesh->vertex_memory);
   if (!status) {
     status = tc_array_keep(context, &desc->tetrahedra, 4, desc->ownership, "tetrahedra", &mesh->tetrahedra,
                            &mesh->tetrahedron_memory);
   }
-  if (!status) status = examine(context, mesh);
+  if (!status)
+    status = examine(context, mesh);
   if (status) {
     tc_mesh_destroy(mesh);
     return status;
@@ -144,7 +153,8 @@ TetcastStatus tc_mesh_create(TetcastContext *context, const TetcastMeshDesc *des
 }
 
 void tc_mesh_destroy(TetcastMesh *mesh) {
-  if (!mesh) return;
+  if (!mesh)
+    return;
   TetcastContext *context = mesh->context;
   tc_release(context, mesh->vertex_memory);
   tc_release(context, mesh->tetrahedron_memory);

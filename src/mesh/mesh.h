@@ -41,7 +41,8 @@ static inline void tc_mesh_vertex(const TetcastMesh *mesh, int64_t i, double pos
   } else {
     float p[3];
     memcpy(p, tuple, sizeof p);
-    for (int k = 0; k < 3; ++k) position[k] = (double)p[k];
+    for (int k = 0; k < 3; ++k)
+      position[k] = (double)p[k];
   }
 }
 
@@ -49,9 +50,11 @@ static inline void tc_mesh_tetrahedron(const TetcastMesh *mesh, int64_t i, int64
   if (mesh->tetrahedra.type == TETCAST_TYPE_INT32) {
     int32_t v[4];
     memcpy(v, (const char *)mesh->tetrahedra.data + i * mesh->tetrahedra.stride, sizeof v);
-    for (int k = 0; k < 4; ++k) indices[k] = v[k];
+    for (int k = 0; k < 4; ++k)
+      indices[k] = v[k];
   } else {
-    for (int k = 0; k < 4; ++k) indices[k] = tc_array_int64(&mesh->tetrahedra, mesh->tetrahedra.stride, i, k);
+    for (int k = 0; k < 4; ++k)
+      indices[k] = tc_array_int64(&mesh->tetrahedra, mesh->tetrahedra.stride, i, k);
   }
 }
 
@@ -63,7 +66,8 @@ static inline void tc_mesh_cell(const TetcastMesh *mesh, int64_t i, uint32_t ver
   } else {
     uint64_t v[4];
     memcpy(v, tuple, sizeof v);
-    for (int k = 0; k < 4; ++k) vertices[k] = (uint32_t)v[k];
+    for (int k = 0; k < 4; ++k)
+      vertices[k] = (uint32_t)v[k];
   }
 }
 

@@ -18,7 +18,9 @@ typedef struct Sort {
   uint32_t *histogram; /* [blocks][digits]: how many, then where the next goes */
 } Sort;
 
-static uint32_t *histogram_of(const Sort *sort, int64_t block) { return sort->histogram + block * sort->digits; }
+static uint32_t *histogram_of(const Sort *sort, int64_t block) {
+  return sort->histogram + block * sort->digits;
+}
 
 static bool count_digits(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
@@ -26,8 +28,10 @@ static bool count_digits(void *data, int64_t begin, int64_t end, int worker) {
   for (int64_t block = begin; block < end; ++block) {
     uint32_t *histogram = histogram_of(sort, block);
     memset(histogram, 0, (size_t)sort->digits * sizeof *histogram);
-    const int64_t first = block * sort->block, last = first + sort->block < sort->count ? first + sort->block : sort->count;
-    for (int64_t i = first; i < last; ++i) ++histogram[(sort->from[i] >> sort->shift) & (uint64_t)(sort->digits - 1)];
+    const int64_t first = block * sort->block,
+                  last = first + sort->block < sort->count ? first + sort->block : sort->count;
+    for (int64_t i = first; i < last; ++i)
+      ++histogram[(sort->from[i] >> sort->shift) & (uint64_t)(sort->digits - 1)];
   }
   return true;
 }
@@ -37,7 +41,8 @@ static bool move_records(void *data, int64_t begin, int64_t end, int worker) {
   const Sort *sort = data;
   for (int64_t block = begin; block < end; ++block) {
     uint32_t *next = histogram_of(sort, block);
-    const int64_t first = block * sort->block, last = first + sort->block < sort->count ? first + sort->block : sort->count;
+    const int64_t first = block * sort->block,
+                  last = first + sort->block < sort->count ? first + sort->block : sort->count;
     for (int64_t i = first; i < last; ++i) {
       sort->to[next[(sort->from[i] >> sort->shift) & (uint64_t)(sort->digits - 1)]++] = sort->from[i];
     }
@@ -58,13 +63,17 @@ static void accumulate(Sort *sort, int64_t blocks) {
   }
 }
 
-TetcastStatus tc_sort_records(TetcastContext *context, uint64_t **records, uint64_t **scratch, int64_t count, uint32_t largest) {
+TetcastStatus tc_sort_records(TetcastContext *context, uint64_t **records, uint64_t **scratch, int64_t count,
+                              uint32_t largest) {
   int bits = 0;
-  while (bits < 32 && largest >> bits) ++bits;
-  if (bits == 0 || count < 2) return TETCAST_OK;
+  while (bits < 32 && largest >> bits)
+    ++bits;
+  if (bits == 0 || count < 2)
+    return TETCAST_OK;
   const int passes = (bits + DIGIT_BITS - 1) / DIGIT_BITS, width = (bits + passes - 1) / passes;
   Sort sort = {.count = count, .block = BLOCK, .digits = 1 << width};
-  if (sort.block * MOST_BLOCKS < count) sort.block = (count + MOST_BLOCKS - 1) / MOST_BLOCKS;
+  if (sort.block * MOST_BLOCKS < count)
+    sort.block = (count + MOST_BLOCKS - 1) / MOST_BLOCKS;
   const int64_t blocks = (count + sort.block - 1) / sort.block;
   if (!tc_allocate_array(context, (void **)&sort.histogram, blocks * sort.digits, sizeof *sort.histogram, "sorting")) {
     return TETCAST_ERROR_MEMORY;
@@ -88,8 +97,10 @@ int64_t tc_find_record(const uint64_t *records, int64_t count, uint32_t key) {
   int64_t low = 0;
   while (low < count) {
     const int64_t middle = low + (count - low) / 2;
-    if (tc_record_key(records[middle]) < key) low = middle + 1;
-    else count = middle;
+    if (tc_record_key(records[middle]) < key)
+      low = middle + 1;
+    else
+      count = middle;
   }
   return low;
 }
@@ -98,16 +109,20 @@ int64_t tc_find_record(const uint64_t *records, int64_t count, uint32_t key) {
 
 enum { CURVE_BITS = 20, HALF_BITS = CURVE_BITS * 3 / 2, STATES = 24 };
 
-/* The curve passes the eight parts of a cube in the order of a Gray code that is mirrored and turned. A state is the corner where it
- * comes in and the axis along which it goes on: for a part, its place in the order and the state inside it
- * (Hamilton, Compact Hilbert indices, 2006). */
+/* The curve passes the eight parts of a cube in the order of a Gray code that is mirrored and turned. A state is the
+ * corner where it comes in and the axis along which it goes on: for a part, its place in the order and the state inside
+ * it (Hamilton, Compact Hilbert indices, 2006). */
 typedef struct Curve {
   unsigned char place[STATES][8], next[STATES][8];
 } Curve;
 
-static unsigned turn_left(unsigned bits, unsigned by) { return (bits << by % 3 | bits >> (3 - by % 3)) & 7; }
+static unsigned turn_left(unsigned bits, unsigned by) {
+  return (bits << by % 3 | bits >> (3 - by % 3)) & 7;
+}
 
-static unsigned trailing_ones(unsigned bits) { return bits & 1 ? 1 + trailing_ones(bits >> 1) : 0; }
+static unsigned trailing_ones(unsigned bits) {
+  return bits & 1 ? 1 + trailing_ones(bits >> 1) : 0;
+}
 
 static void make_curve(Curve *curve) {
   for (unsigned entry = 0; entry < 8; ++entry) {
@@ -146,7 +161,7 @@ uint64_t tc_hilbert_index(const uint32_t at[3]) {
 typedef struct Order {
   const TetcastMesh *mesh;
   Curve curve;
-  double low[3], size;           /* halved, so that no difference overflows */
+  double low[3], size; /* halved, so that no difference overflows */
   uint64_t *keys, *records, *scratch;
   uint32_t *order;
 } Order;
@@ -181,7 +196,8 @@ static bool take_upper_halves(void *data, int64_t begin, int64_t end, int worker
 static bool take_values(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   Order *order = data;
-  for (int64_t i = begin; i < end; ++i) order->order[i] = tc_record_value(order->records[i]);
+  for (int64_t i = begin; i < end; ++i)
+    order->order[i] = tc_record_value(order->records[i]);
   return true;
 }
 
@@ -195,10 +211,12 @@ static TetcastStatus run(TetcastContext *context, Order *order, int64_t count) {
   const uint32_t largest = (1u << HALF_BITS) - 1;
   tc_parallel_for(context, count, GRAIN, find_places, order, NULL);
   TetcastStatus status = tc_sort_records(context, &order->records, &order->scratch, count, largest);
-  if (status) return status;
+  if (status)
+    return status;
   tc_parallel_for(context, count, GRAIN, take_upper_halves, order, NULL);
   status = tc_sort_records(context, &order->records, &order->scratch, count, largest);
-  if (status) return status;
+  if (status)
+    return status;
   tc_parallel_for(context, count, GRAIN, take_values, order, NULL);
   return TETCAST_OK;
 }
@@ -215,7 +233,9 @@ TetcastStatus tc_order_vertices(const TetcastMesh *mesh, uint32_t **out) {
   tc_release(context, order.keys);
   tc_release(context, order.records);
   tc_release(context, order.scratch);
-  if (status) tc_release(context, order.order);
-  else *out = order.order;
+  if (status)
+    tc_release(context, order.order);
+  else
+    *out = order.order;
   return status;
 }

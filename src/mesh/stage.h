@@ -16,9 +16,11 @@ static inline bool tc_stage_report(void *user, double fraction) {
   return stage->whole->function(stage->whole->user, stage->begin + fraction * (stage->end - stage->begin));
 }
 
-/* What to hand to the stage that takes the work from `begin` to `end`; NULL when nobody listens. *stage must outlive the stage. */
+/* What to hand to the stage that takes the work from `begin` to `end`; NULL when nobody listens. *stage must outlive
+ * the stage. */
 static inline const TetcastProgress *tc_stage(TcStage *stage, const TetcastProgress *whole, double begin, double end) {
-  if (!whole || !whole->function) return NULL;
+  if (!whole || !whole->function)
+    return NULL;
   *stage = (TcStage){.progress = {tc_stage_report, stage}, .whole = whole, .begin = begin, .end = end};
   return &stage->progress;
 }

@@ -4,7 +4,8 @@
 #include <float.h>
 #include <math.h>
 
-/* Places in a grid whose cells are four times as wide as the tolerance, by a hash. A vertex that lies alone is in the list of its grid cell. */
+/* Places in a grid whose cells are four times as wide as the tolerance, by a hash. A vertex that lies alone is in the
+ * list of its grid cell. */
 typedef struct Grid {
   const TetcastMesh *mesh;
   double tolerance[3];
@@ -26,7 +27,9 @@ void tc_weld_tolerance(const TetcastMesh *mesh, double tolerance[3]) {
 }
 
 /* The grid's cell at this place along one axis; where all coordinates are 0, there is one. */
-static double place_of(double x, double tolerance) { return tolerance > 0 ? floor(x / (4 * tolerance)) : 0; }
+static double place_of(double x, double tolerance) {
+  return tolerance > 0 ? floor(x / (4 * tolerance)) : 0;
+}
 
 static uint64_t hash_of(const Grid *grid, const double at[3]) {
   uint64_t hash = 0;
@@ -44,7 +47,8 @@ static bool is_near(const Grid *grid, uint32_t vertex, const double p[3]) {
   return fabs(p[0] - q[0]) <= tolerance[0] && fabs(p[1] - q[1]) <= tolerance[1] && fabs(p[2] - q[2]) <= tolerance[2];
 }
 
-/* The one of the vertices in the grid that lies within the tolerance of p, as its number plus one; the latest, if there are several. */
+/* The one of the vertices in the grid that lies within the tolerance of p, as its number plus one; the latest, if there
+ * are several. */
 static uint32_t find(const Grid *grid, const uint32_t *vertices, const double p[3]) {
   double low[3], high[3], at[3];
   for (int k = 0; k < 3; ++k) {
@@ -58,7 +62,8 @@ static uint32_t find(const Grid *grid, const uint32_t *vertices, const double p[
       seen = seen || (corner >> k & 1 && high[k] == low[k]);
     }
     for (uint32_t i = seen ? NONE : grid->first[hash_of(grid, at)]; i != NONE; i = grid->next[i - 1]) {
-      if (is_near(grid, vertices[i - 1], p)) return i;
+      if (is_near(grid, vertices[i - 1], p))
+        return i;
     }
   }
   return NONE;
@@ -66,7 +71,8 @@ static uint32_t find(const Grid *grid, const uint32_t *vertices, const double p[
 
 static void add(Grid *grid, uint32_t number, const double p[3]) {
   double at[3];
-  for (int k = 0; k < 3; ++k) at[k] = place_of(p[k], grid->tolerance[k]);
+  for (int k = 0; k < 3; ++k)
+    at[k] = place_of(p[k], grid->tolerance[k]);
   uint32_t *first = &grid->first[hash_of(grid, at)];
   grid->next[number - 1] = *first;
   *first = number;
@@ -79,14 +85,16 @@ static int64_t find_all(Grid *grid, const uint32_t *vertices, int64_t count, uin
     double p[3];
     tc_mesh_vertex(grid->mesh, vertices[i], p);
     with[i] = find(grid, vertices, p);
-    if (with[i] == NONE) add(grid, (uint32_t)i + 1, p);
-    else ++found;
+    if (with[i] == NONE)
+      add(grid, (uint32_t)i + 1, p);
+    else
+      ++found;
   }
   return found;
 }
 
-/* Marks those with which vertices of one cell would become one, though the cell has two of them. `place`: for each of the mesh's vertices its number among
- * the candidates plus one. */
+/* Marks those with which vertices of one cell would become one, though the cell has two of them. `place`: for each of
+ * the mesh's vertices its number among the candidates plus one. */
 static void find_thin_cells(const TetcastMesh *mesh, const uint32_t *place, const uint32_t *with, uint32_t *thin) {
   for (int64_t i = 0; i < mesh->tetrahedra.count; ++i) {
     uint32_t v[4], own[4], is[4];
@@ -97,47 +105,59 @@ static void find_thin_cells(const TetcastMesh *mesh, const uint32_t *place, cons
     }
     for (int k = 1; k < 4; ++k) {
       for (int j = 0; j < k; ++j) {
-        if (is[j] != NONE && is[j] == is[k] && own[j] != own[k]) thin[is[j] - 1] = 1;
+        if (is[j] != NONE && is[j] == is[k] && own[j] != own[k])
+          thin[is[j] - 1] = 1;
       }
     }
   }
 }
 
-static TetcastStatus weld(Grid *grid, const uint32_t *vertices, int64_t count, uint32_t *with, TcWeld **welds, int64_t *weld_count) {
+static TetcastStatus weld(Grid *grid, const uint32_t *vertices, int64_t count, uint32_t *with, TcWeld **welds,
+                          int64_t *weld_count) {
   const TetcastMesh *mesh = grid->mesh;
   int64_t found = find_all(grid, vertices, count, with);
-  if (found == 0) return TETCAST_OK;
+  if (found == 0)
+    return TETCAST_OK;
   uint32_t *place;
-  if (!tc_allocate_array(mesh->context, (void **)&place, mesh->vertices.count, sizeof *place, "vertices at one place")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(mesh->context, (void **)&place, mesh->vertices.count, sizeof *place, "vertices at one place"))
+    return TETCAST_ERROR_MEMORY;
   memset(place, 0, (size_t)mesh->vertices.count * sizeof *place);
-  for (int64_t i = 0; i < count; ++i) place[vertices[i]] = (uint32_t)i + 1;
+  for (int64_t i = 0; i < count; ++i)
+    place[vertices[i]] = (uint32_t)i + 1;
   uint32_t *const thin = grid->next; /* which has done its work */
   memset(thin, 0, (size_t)count * sizeof *thin);
   find_thin_cells(mesh, place, with, thin);
   tc_release(mesh->context, place);
   for (int64_t i = 0; i < count; ++i) {
-    if (with[i] == NONE || !thin[with[i] - 1]) continue;
+    if (with[i] == NONE || !thin[with[i] - 1])
+      continue;
     with[i] = NONE;
     --found;
   }
-  if (found == 0) return TETCAST_OK;
-  if (!tc_allocate_array(mesh->context, (void **)welds, found, sizeof **welds, "vertices at one place")) return TETCAST_ERROR_MEMORY;
+  if (found == 0)
+    return TETCAST_OK;
+  if (!tc_allocate_array(mesh->context, (void **)welds, found, sizeof **welds, "vertices at one place"))
+    return TETCAST_ERROR_MEMORY;
   for (int64_t i = 0; i < count; ++i) {
-    if (with[i] != NONE) (*welds)[(*weld_count)++] = (TcWeld){vertices[i], vertices[with[i] - 1]};
+    if (with[i] != NONE)
+      (*welds)[(*weld_count)++] = (TcWeld){vertices[i], vertices[with[i] - 1]};
   }
   return TETCAST_OK;
 }
 
-TetcastStatus tc_weld(const TetcastMesh *mesh, const uint32_t *vertices, int64_t count, TcWeld **welds, int64_t *weld_count) {
+TetcastStatus tc_weld(const TetcastMesh *mesh, const uint32_t *vertices, int64_t count, TcWeld **welds,
+                      int64_t *weld_count) {
   TetcastContext *context = mesh->context;
   Grid grid = {.mesh = mesh, .mask = 1};
   tc_weld_tolerance(mesh, grid.tolerance);
   *welds = NULL;
   *weld_count = 0;
-  while (grid.mask < 2 * (uint64_t)count) grid.mask *= 2;
+  while (grid.mask < 2 * (uint64_t)count)
+    grid.mask *= 2;
   uint32_t *with = NULL;
   TetcastStatus status = TETCAST_ERROR_MEMORY;
-  if (tc_allocate_array(context, (void **)&grid.first, (int64_t)grid.mask, sizeof *grid.first, "vertices at one place") &&
+  if (tc_allocate_array(context, (void **)&grid.first, (int64_t)grid.mask, sizeof *grid.first,
+                        "vertices at one place") &&
       tc_allocate_array(context, (void **)&grid.next, count, sizeof *grid.next, "vertices at one place") &&
       tc_allocate_array(context, (void **)&with, count, sizeof *with, "vertices at one place")) {
     memset(grid.first, 0, (size_t)grid.mask * sizeof *grid.first);

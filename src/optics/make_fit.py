@@ -105,6 +105,7 @@ def write_g(most, count, name):
 
 
 print('/* SPDX-License-Identifier: Apache-2.0 */')
+print('/* clang-format off */')
 print('/* Made by make_fit.py: coefficients of g, of rising powers of h; for each power of d, from the highest on, those of the powers of x. */')
 print('#ifndef TC_OPTICS_SEGMENT_FIT_H\n#define TC_OPTICS_SEGMENT_FIT_H')
 write_g(0.5, 5, 'SINGLE')

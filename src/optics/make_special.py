@@ -109,6 +109,7 @@ def main():
     functions = (("mills", mills, 64), ("dawson", dawson, 192), ("mills moment", mills_moment, 64),
                  ("dawson moment", dawson_moment, 192))
     print("/* SPDX-License-Identifier: Apache-2.0 */")
+    print("/* clang-format off */")
     print("/* Made by make_special.py, and included where a table is defined. Row i of a function's n covers t in [i, i + 1] / n; coefficients of\n"
           " * rising powers of v in [-1, 1]. */")
     for name, function, pieces in functions:

@@ -23,7 +23,8 @@ static void gauss_legendre(TcSampler *sampler) {
       slope = n * (x * p1 - p0) / (x * x - 1);
       const double change = p1 / slope;
       x -= change;
-      if (fabs(change) < 1e-16) break;
+      if (fabs(change) < 1e-16)
+        break;
     }
     sampler->nodes[n - 1 - i] = 0.5 * (1 + x);
     sampler->weights[n - 1 - i] = 1 / ((1 - x * x) * slope * slope);
@@ -40,7 +41,8 @@ static void gauss_legendre(TcSampler *sampler) {
         const double u = sampler->nodes[i] * sampler->nodes[q];
         double value = 1;
         for (int m = 0; m < n; ++m) {
-          if (m != j) value *= (u - sampler->nodes[m]) / (sampler->nodes[j] - sampler->nodes[m]);
+          if (m != j)
+            value *= (u - sampler->nodes[m]) / (sampler->nodes[j] - sampler->nodes[m]);
         }
         sum += sampler->weights[q] * value;
       }
@@ -63,14 +65,17 @@ static void psi_table(TcSampler *sampler) {
 
 TetcastStatus tc_sampler_create(TetcastContext *context, TetcastIntegrator integrator, int n, TcSampler **out) {
   TcSampler *sampler;
-  if (!tc_allocate_array(context, (void **)&sampler, 1, sizeof *sampler, "integrator")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&sampler, 1, sizeof *sampler, "integrator"))
+    return TETCAST_ERROR_MEMORY;
   memset(sampler, 0, sizeof *sampler);
   sampler->context = context;
   sampler->integrator = integrator;
   sampler->n = n;
-  if (integrator == TETCAST_INTEGRATOR_GAUSS) gauss_legendre(sampler);
+  if (integrator == TETCAST_INTEGRATOR_GAUSS)
+    gauss_legendre(sampler);
   if (integrator == TETCAST_INTEGRATOR_TABLE) {
-    if (!tc_allocate_array(context, (void **)&sampler->table, (int64_t)n * n, sizeof(double), "table of an integrator")) {
+    if (!tc_allocate_array(context, (void **)&sampler->table, (int64_t)n * n, sizeof(double),
+                           "table of an integrator")) {
       tc_sampler_destroy(sampler);
       return TETCAST_ERROR_MEMORY;
     }
@@ -81,7 +86,8 @@ TetcastStatus tc_sampler_create(TetcastContext *context, TetcastIntegrator integ
 }
 
 void tc_sampler_destroy(TcSampler *sampler) {
-  if (!sampler) return;
+  if (!sampler)
+    return;
   tc_release(sampler->context, sampler->table);
   tc_release(sampler->context, sampler);
 }
@@ -103,18 +109,21 @@ static void end_block(TcLight *light) {
 }
 
 bool tc_light_opaque(const TcLight *light, const TcPieces *pieces) {
-  if (light->depth + light->block_depth <= TC_NEARLY_OPAQUE) return false;
+  if (light->depth + light->block_depth <= TC_NEARLY_OPAQUE)
+    return false;
   const double left = light->transmittance * light->block_transmittance;
   for (int k = 0; k < 3; ++k) {
     const double color = light->color[k] + light->transmittance * light->block_color[k];
-    if (left * pieces->largest[k] > 0x1p-54 * color) return false;
+    if (left * pieces->largest[k] > 0x1p-54 * color)
+      return false;
   }
   return true;
 }
 
 void tc_light_end(TcLight *light, double rgba[4]) {
   end_block(light);
-  for (int k = 0; k < 3; ++k) rgba[k] = light->color[k];
+  for (int k = 0; k < 3; ++k)
+    rgba[k] = light->color[k];
   rgba[3] = -expm1(-light->depth);
 }
 
@@ -122,10 +131,12 @@ void tc_light_end(TcLight *light, double rgba[4]) {
 
 /* A colour already weighted with the segment's own transmittance, and its depth. */
 static void add(TcLight *light, const double emitted[3], double depth) {
-  for (int k = 0; k < 3; ++k) light->block_color[k] += light->block_transmittance * emitted[k];
+  for (int k = 0; k < 3; ++k)
+    light->block_color[k] += light->block_transmittance * emitted[k];
   light->block_transmittance *= exp(-depth);
   light->block_depth += depth;
-  if (++light->block_length == BLOCK) end_block(light);
+  if (++light->block_length == BLOCK)
+    end_block(light);
 }
 
 static void add_constant(TcLight *light, const TcOptics *o, double length) {
@@ -143,11 +154,15 @@ static void add_trapezoid(TcLight *light, const TcPieces *pieces, double length,
   const TcOptics a = tc_pieces_at(pieces, s0), b = tc_pieces_at(pieces, s1);
   const double depth = 0.5 * (a.extinction + b.extinction) * length, alpha = -0.5 * expm1(-depth);
   add(light,
-      (double[3]){alpha * (a.color[0] + b.color[0]), alpha * (a.color[1] + b.color[1]), alpha * (a.color[2] + b.color[2])}, depth);
+      (double[3]){alpha * (a.color[0] + b.color[0]), alpha * (a.color[1] + b.color[1]),
+                  alpha * (a.color[2] + b.color[2])},
+      depth);
 }
 
-/* ∫ c κ e^−τ at n nodes, with τ at a node from the polynomial through κ at all nodes: Gauss collocation, of order 2n. */
-static void add_gauss(TcLight *light, const TcPieces *pieces, const TcSampler *sampler, double length, double s0, double s1) {
+/* ∫ c κ e^−τ at n nodes, with τ at a node from the polynomial through κ at all nodes: Gauss collocation, of order 2n.
+ */
+static void add_gauss(TcLight *light, const TcPieces *pieces, const TcSampler *sampler, double length, double s0,
+                      double s1) {
   const int n = sampler->n;
   TcOptics o[TETCAST_MAX_GAUSS];
   double depth = 0, emitted[3] = {0, 0, 0};
@@ -158,9 +173,12 @@ static void add_gauss(TcLight *light, const TcPieces *pieces, const TcSampler *s
   }
   for (int i = 0; i < n; ++i) {
     double inner = 0;
-    for (int j = 0; j < n; ++j) inner += sampler->inner[i][j] * o[j].extinction * length;
-    const double weight = sampler->weights[i] * o[i].extinction * length * exp(-fmax(inner, 0)); /* a polynomial may undershoot */
-    for (int k = 0; k < 3; ++k) emitted[k] += weight * o[i].color[k];
+    for (int j = 0; j < n; ++j)
+      inner += sampler->inner[i][j] * o[j].extinction * length;
+    const double weight =
+        sampler->weights[i] * o[i].extinction * length * exp(-fmax(inner, 0)); /* a polynomial may undershoot */
+    for (int k = 0; k < 3; ++k)
+      emitted[k] += weight * o[i].color[k];
   }
   add(light, emitted, depth);
 }
@@ -175,17 +193,22 @@ static double psi_from_table(const TcSampler *sampler, double a, double a1) {
 }
 
 /* The closed form with a tabulated Ψ, on one linear piece. */
-static void add_table_part(TcLight *light, const TcSampler *sampler, const TcPiece *piece, double length, double s0, double s1) {
+static void add_table_part(TcLight *light, const TcSampler *sampler, const TcPiece *piece, double length, double s0,
+                           double s1) {
   const TcOptics near = tc_piece_at(piece, s0), far = tc_piece_at(piece, s1);
-  const double a = fmin(near.extinction * length, 1e300), a1 = fmin(far.extinction * length, 1e300), depth = 0.5 * a + 0.5 * a1;
+  const double a = fmin(near.extinction * length, 1e300), a1 = fmin(far.extinction * length, 1e300),
+               depth = 0.5 * a + 0.5 * a1;
   const double psi = psi_from_table(sampler, a, a1), transmittance = exp(-depth);
   double emitted[3];
-  for (int k = 0; k < 3; ++k) emitted[k] = near.color[k] - far.color[k] * transmittance + (far.color[k] - near.color[k]) * psi;
+  for (int k = 0; k < 3; ++k)
+    emitted[k] = near.color[k] - far.color[k] * transmittance + (far.color[k] - near.color[k]) * psi;
   add(light, emitted, depth);
 }
 
-/* Cut at the knots. The lengths of parts come from differences of scalars, not of positions along the segment: nothing cancels. */
-static void add_table(TcLight *light, const TcPieces *pieces, const TcSampler *sampler, double length, double s0, double s1) {
+/* Cut at the knots. The lengths of parts come from differences of scalars, not of positions along the segment: nothing
+ * cancels. */
+static void add_table(TcLight *light, const TcPieces *pieces, const TcSampler *sampler, double length, double s0,
+                      double s1) {
   const double whole = fabs(s1 - s0);
   const int step = s0 <= s1 ? 1 : -1;
   const TcPiece *piece = &pieces->pieces[s0 <= s1 ? tc_piece_above(pieces, s0) : tc_piece_below(pieces, s0)];
@@ -200,19 +223,26 @@ static void add_table(TcLight *light, const TcPieces *pieces, const TcSampler *s
   }
 }
 
-void tc_light_add_sampled(TcLight *light, const TcPieces *pieces, const TcSampler *sampler, double length, double s0, double s1) {
+void tc_light_add_sampled(TcLight *light, const TcPieces *pieces, const TcSampler *sampler, double length, double s0,
+                          double s1) {
   const int n = sampler->n;
   switch (sampler->integrator) {
   case TETCAST_INTEGRATOR_MIDPOINT:
-    for (int i = 0; i < n; ++i) tc_light_add_constant(light, pieces, length / n, s0 + (s1 - s0) * ((i + 0.5) / n));
+    for (int i = 0; i < n; ++i)
+      tc_light_add_constant(light, pieces, length / n, s0 + (s1 - s0) * ((i + 0.5) / n));
     break;
   case TETCAST_INTEGRATOR_TRAPEZOID:
     for (int i = 0; i < n; ++i) {
       add_trapezoid(light, pieces, length / n, s0 + (s1 - s0) * ((double)i / n), s0 + (s1 - s0) * ((i + 1.0) / n));
     }
     break;
-  case TETCAST_INTEGRATOR_GAUSS: add_gauss(light, pieces, sampler, length, s0, s1); break;
-  case TETCAST_INTEGRATOR_TABLE: add_table(light, pieces, sampler, length, s0, s1); break;
-  case TETCAST_INTEGRATOR_EXACT: break; /* by the kernels themselves */
+  case TETCAST_INTEGRATOR_GAUSS:
+    add_gauss(light, pieces, sampler, length, s0, s1);
+    break;
+  case TETCAST_INTEGRATOR_TABLE:
+    add_table(light, pieces, sampler, length, s0, s1);
+    break;
+  case TETCAST_INTEGRATOR_EXACT:
+    break; /* by the kernels themselves */
   }
 }

@@ -11,9 +11,9 @@ typedef struct TcSampler {
   TetcastContext *context;
   TetcastIntegrator integrator;
   int n;
-  double *table;                           /* table: [n][n] of Ψ */
-  double nodes[TETCAST_MAX_GAUSS];         /* gauss: in [0, 1] */
-  double weights[TETCAST_MAX_GAUSS];       /* sum 1 */
+  double *table;                                      /* table: [n][n] of Ψ */
+  double nodes[TETCAST_MAX_GAUSS];                    /* gauss: in [0, 1] */
+  double weights[TETCAST_MAX_GAUSS];                  /* sum 1 */
   double inner[TETCAST_MAX_GAUSS][TETCAST_MAX_GAUSS]; /* inner[i][j] = ∫₀^node[i] of the j-th Lagrange polynomial */
 } TcSampler;
 
@@ -27,13 +27,17 @@ typedef struct TcLight {
   int block_length;
 } TcLight;
 
-static inline TcLight tc_light_begin(void) { return (TcLight){.transmittance = 1, .block_transmittance = 1}; }
+static inline TcLight tc_light_begin(void) {
+  return (TcLight){.transmittance = 1, .block_transmittance = 1};
+}
 
 /* Whether the light is complete: so deep that what is left changes no channel by half a unit in the last place. */
 bool tc_light_opaque(const TcLight *light, const TcPieces *pieces);
 
-/* Adds a segment of length > 0 of a point field with scalars s0 → s1 (finite, linear in between), or of a cell's constant scalar, which is exact. */
-void tc_light_add_sampled(TcLight *light, const TcPieces *pieces, const TcSampler *sampler, double length, double s0, double s1);
+/* Adds a segment of length > 0 of a point field with scalars s0 → s1 (finite, linear in between), or of a cell's
+ * constant scalar, which is exact. */
+void tc_light_add_sampled(TcLight *light, const TcPieces *pieces, const TcSampler *sampler, double length, double s0,
+                          double s1);
 void tc_light_add_constant(TcLight *light, const TcPieces *pieces, double length, double s);
 
 /* Premultiplied colour and opacity of all that was added. */

@@ -7,9 +7,9 @@
  *
  *     C = ∫₀¹ c(u) τ'(u) e^−τ(u) du = c₀ w₀ + c₁ w₁,     w₀ = 1 − Ψ,  w₁ = Ψ − e^−T,  Ψ = ∫₀¹ e^−τ(u) du
  *
- * (Williams & Max, A volume density optical model, 1992; Ψ as in Moreland & Angel, A fast high accuracy volume renderer for
- * unstructured data, 2004). Both weights are integrals of something ≥ 0 and are computed without cancellation; they sum to
- * the opacity 1 − e^−T. */
+ * (Williams & Max, A volume density optical model, 1992; Ψ as in Moreland & Angel, A fast high accuracy volume renderer
+ * for unstructured data, 2004). Both weights are integrals of something ≥ 0 and are computed without cancellation; they
+ * sum to the opacity 1 − e^−T. */
 typedef struct TcSegment {
   double w0, w1;        /* weights of the colour at the near and the far end, ≥ 0 */
   double alpha;         /* 1 − e^−T */
@@ -20,18 +20,20 @@ typedef struct TcSegment {
 /* a, a1 ≥ 0, not NaN; values above 1e300 count as 1e300. Relative errors of w0, w1 and alpha are below 4e-15. */
 TcSegment tc_segment(double a, double a1);
 
-/* The same for T ≤ 1/2 by short polynomials: weights, alpha and transmittance are off by less than T⁵/120 in all, which is less than
- * alpha T⁴/90. */
+/* The same for T ≤ 1/2 by short polynomials: weights, alpha and transmittance are off by less than T⁵/120 in all, which
+ * is less than alpha T⁴/90. */
 TcSegment tc_segment_thin(double a, double a1);
 
 /* The same for a = a1 = depth: no Ψ. */
 TcSegment tc_segment_constant(double depth);
 
-/* What an emission j per length that is linear on the segment, too, and given apart from the extinction, sends out of it:
+/* What an emission j per length that is linear on the segment, too, and given apart from the extinction, sends out of
+ * it:
  *
  *     h ∫₀¹ ((1 − u) j₀ + u j₁) e^−τ(u) du = h (j₀ m₀ + j₁ m₁),     m₀ + m₁ = Ψ,  a m₀ + a1 m₁ = 1 − e^−T
  *
- * Without extinction m₀ = m₁ = ½, exactly. Both are integrals of something ≥ 0 and are computed without cancellation. */
+ * Without extinction m₀ = m₁ = ½, exactly. Both are integrals of something ≥ 0 and are computed without cancellation.
+ */
 typedef struct TcMoments {
   double m0, m1;        /* in [0, ½]; those below 1e-307 denormal or 0 */
   double transmittance; /* e^−T */
@@ -44,8 +46,14 @@ typedef struct TcMoments {
 /* a, a1 ≥ 0, not NaN; values above TC_LARGEST_DENSITY count as that. Relative errors of m0 and m1 are below 5e-15. */
 TcMoments tc_segment_moments(double a, double a1);
 
-/* Mills' ratio and Dawson's integral, for Ψ, then the negatives of their derivatives, for its moments (segment.c, make_special.py). */
-enum { TC_MILLS_ROWS = 64, TC_DAWSON_ROWS = 192, TC_SPECIAL_ROWS = TC_MILLS_ROWS + TC_DAWSON_ROWS, TC_SPECIAL_TERMS = 8 };
+/* Mills' ratio and Dawson's integral, for Ψ, then the negatives of their derivatives, for its moments (segment.c,
+ * make_special.py). */
+enum {
+  TC_MILLS_ROWS = 64,
+  TC_DAWSON_ROWS = 192,
+  TC_SPECIAL_ROWS = TC_MILLS_ROWS + TC_DAWSON_ROWS,
+  TC_SPECIAL_TERMS = 8
+};
 extern const double tc_special_f64[2 * TC_SPECIAL_ROWS][TC_SPECIAL_TERMS];
 extern const float tc_special_f32[2 * TC_SPECIAL_ROWS][TC_SPECIAL_TERMS];
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* clang-format off */
 /* Made by make_fit.py: coefficients of g, of rising powers of h; for each power of d, from the highest on, those of the powers of x. */
 #ifndef TC_OPTICS_SEGMENT_FIT_H
 #define TC_OPTICS_SEGMENT_FIT_H

@@ -13,26 +13,27 @@ typedef struct TcSegments {
 
 /* ── up to a depth of ½, or of 1: fitted polynomials ── */
 
-/* Horner in x for each power of d, and in d over these; a row's coefficients are constants, so that all of it is written out. */
-#define TC_FIT_ROW(...)                                                              \
-  {                                                                                  \
-    const double row[] = {__VA_ARGS__};                                              \
-    const TcVec value = tc_polynomial(x, row, sizeof row / sizeof *row);             \
-    sum = first ? value : tc_madd(sum, d, value);                                    \
-    first = false;                                                                   \
+/* Horner in x for each power of d, and in d over these; a row's coefficients are constants, so that all of it is
+ * written out. */
+#define TC_FIT_ROW(...)                                                                                                \
+  {                                                                                                                    \
+    const double row[] = {__VA_ARGS__};                                                                                \
+    const TcVec value = tc_polynomial(x, row, sizeof row / sizeof *row);                                               \
+    sum = first ? value : tc_madd(sum, d, value);                                                                      \
+    first = false;                                                                                                     \
   }
-#define TC_FIT(name, FIT)                          \
-  TC_INLINE TcVec name(TcVec x, TcVec d) {         \
-    TcVec sum = x;                                 \
-    bool first = true;                             \
-    FIT(TC_FIT_ROW)                                \
-    return sum;                                    \
+#define TC_FIT(name, FIT)                                                                                              \
+  TC_INLINE TcVec name(TcVec x, TcVec d) {                                                                             \
+    TcVec sum = x;                                                                                                     \
+    bool first = true;                                                                                                 \
+    FIT(TC_FIT_ROW)                                                                                                    \
+    return sum;                                                                                                        \
   }
 /* e^−h − 1 */
-#define TC_FIT_G(name, ...)                                             \
-  TC_INLINE TcVec name(TcVec h) {                                       \
-    static const double c[] = {__VA_ARGS__};                            \
-    return h * tc_polynomial(h, c, sizeof c / sizeof *c);               \
+#define TC_FIT_G(name, ...)                                                                                            \
+  TC_INLINE TcVec name(TcVec h) {                                                                                      \
+    static const double c[] = {__VA_ARGS__};                                                                           \
+    return h * tc_polynomial(h, c, sizeof c / sizeof *c);                                                              \
   }
 
 /* α = −g (2 + g), w₁ − w₀ = (1 + g) K. */
@@ -40,11 +41,11 @@ TC_INLINE TcSegments tc_segments_fitted(TcVec g, TcVec k) {
   const TcVec half = (TcReal)0.5 * tc_madd(g, k, k), alpha = -g * (2 + g), half_alpha = (TcReal)0.5 * alpha;
   return (TcSegments){alpha, half_alpha - half, half_alpha + half};
 }
-#define TC_FIT_SEGMENTS(name, FIT)                                                            \
-  TC_FIT_G(tc_g_##name, TC_FIT_G_##FIT)                                                       \
-  TC_FIT(tc_k_##name, TC_FIT_K_##FIT)                                                         \
-  TC_INLINE TcSegments tc_segments_##name(TcVec t, TcVec d) {                                 \
-    return tc_segments_fitted(tc_g_##name((TcReal)0.5 * t), tc_k_##name(t * t, d));           \
+#define TC_FIT_SEGMENTS(name, FIT)                                                                                     \
+  TC_FIT_G(tc_g_##name, TC_FIT_G_##FIT)                                                                                \
+  TC_FIT(tc_k_##name, TC_FIT_K_##FIT)                                                                                  \
+  TC_INLINE TcSegments tc_segments_##name(TcVec t, TcVec d) {                                                          \
+    return tc_segments_fitted(tc_g_##name((TcReal)0.5 * t), tc_k_##name(t * t, d));                                    \
   }
 #if TC_SINGLE
 TC_FIT_SEGMENTS(half, SINGLE)
@@ -57,11 +58,14 @@ TC_FIT_SEGMENTS(half, HALF)
 #if !TC_SINGLE
 /* tc_segment_thin(), T ≤ ½. */
 TC_INLINE TcSegments tc_segments_thin(TcVec t, TcVec d) {
-  const TcVec alpha = t * tc_madd(-t, tc_madd(-t, tc_madd(-t, tc_set(1. / 24), tc_set(1. / 6)), tc_set(0.5)), tc_set(1));
+  const TcVec alpha =
+      t * tc_madd(-t, tc_madd(-t, tc_madd(-t, tc_set(1. / 24), tc_set(1. / 6)), tc_set(0.5)), tc_set(1));
   TcVec difference = tc_madd(t, tc_set(-1. / 40), tc_madd(d, tc_set(-1. / 90), tc_set(1. / 12)));
   difference = tc_madd(t, difference, tc_madd(d, tc_madd(d, tc_set(1. / 210), tc_set(1. / 20)), tc_set(-1. / 6)));
   difference = tc_madd(t, difference, -d * tc_madd(d, tc_madd(d, tc_set(1. / 840), tc_set(1. / 60)), tc_set(1. / 6)));
-  difference = tc_madd(t, difference, d * (tc_madd(d, tc_madd(d, tc_madd(d, tc_set(1. / 7560), tc_set(1. / 420)), tc_set(1. / 30)), tc_set(1. / 3))));
+  difference = tc_madd(
+      t, difference,
+      d * (tc_madd(d, tc_madd(d, tc_madd(d, tc_set(1. / 7560), tc_set(1. / 420)), tc_set(1. / 30)), tc_set(1. / 3))));
   return (TcSegments){alpha, 0.5 * (alpha - difference), 0.5 * (alpha + difference)};
 }
 #endif
@@ -80,12 +84,14 @@ TC_INLINE TcVec tc_special(TcVec first, TcVec rows, TcVec t) {
   const TcInt row = tc_nearest(tc_min(scaled, rows - 1) + first, &i);
   const TcReal *at[TC_LANES];
   for (int part = 0; part < TC_SPECIAL_TERMS; part += 4) {
-    for (int l = 0; l < TC_LANES; ++l) at[l] = tc_special_row(TC_AT(row, l)) + part;
+    for (int l = 0; l < TC_LANES; ++l)
+      at[l] = tc_special_row(TC_AT(row, l)) + part;
     tc_load_records(at, c + part);
   }
   const TcVec v = 2 * (scaled - (i - first));
   TcVec sum = c[TC_SPECIAL_TERMS - 1];
-  for (int k = TC_SPECIAL_TERMS - 2; k >= 0; --k) sum = tc_madd(sum, v, c[k]);
+  for (int k = TC_SPECIAL_TERMS - 2; k >= 0; --k)
+    sum = tc_madd(sum, v, c[k]);
   return sum;
 }
 
@@ -96,7 +102,8 @@ TC_INLINE TcSegments tc_segments_thick(TcVec a, TcVec a1) {
   a1 = tc_min(a1, most);
   const TcVec b = a1 - a;
   const TcMask rises = tc_le(zero, b);
-  const TcVec first = tc_select(rises, zero, tc_set(TC_MILLS_ROWS)), rows = tc_select(rises, tc_set(TC_MILLS_ROWS), tc_set(TC_DAWSON_ROWS));
+  const TcVec first = tc_select(rises, zero, tc_set(TC_MILLS_ROWS)),
+              rows = tc_select(rises, tc_set(TC_MILLS_ROWS), tc_set(TC_DAWSON_ROWS));
   const TcVec r = tc_sqrt(tc_select(rises, b, -8 * b)), near = 1 / (r + a), far = 1 / (r + a1);
   const TcVec e = tc_exp((TcReal)-0.5 * a - (TcReal)0.5 * a1);
   const TcVec psi = tc_special(first, rows, r * near) * near - e * (tc_special(first, rows, r * far) * far);
@@ -108,7 +115,8 @@ TC_NOINLINE void tc_segments_deep(TcMask mask, const TcVec *near, const TcVec *f
   const TcVec a = *near, a1 = *far, t = (TcReal)0.5 * a + (TcReal)0.5 * a1, one = tc_set(1);
   const TcMask thick = tc_and(mask, tc_gt(t, tc_set((TcReal)0.5))), others = tc_and_not(mask, thick);
   TcSegments segments = {tc_set(0), tc_set(0), tc_set(0)};
-  if (tc_any(others)) segments = tc_segments_half(t, (TcReal)0.5 * a1 - (TcReal)0.5 * a);
+  if (tc_any(others))
+    segments = tc_segments_half(t, (TcReal)0.5 * a1 - (TcReal)0.5 * a);
   if (tc_any(thick)) {
     const TcSegments deep = tc_segments_thick(tc_select(thick, a, one), tc_select(thick, a1, one));
     segments.alpha = tc_select(thick, deep.alpha, segments.alpha);
@@ -118,17 +126,22 @@ TC_NOINLINE void tc_segments_deep(TcMask mask, const TcVec *near, const TcVec *f
   *result = segments;
 }
 
-/* Any a, a1 ≥ 0 in the lanes of `mask`, 0 in the others; t = (a + a1)/2, d = (a1 − a)/2. If all depths are up to `thin`, by tc_segments_thin(), else
- * with relative errors of w0 and w1 below 8e-15 (single precision: 72 · 2⁻²⁴): the most, where Ψ is taken from Mills' ratios of 2, at T = ½. */
+/* Any a, a1 ≥ 0 in the lanes of `mask`, 0 in the others; t = (a + a1)/2, d = (a1 − a)/2. If all depths are up to
+ * `thin`, by tc_segments_thin(), else with relative errors of w0 and w1 below 8e-15 (single precision: 72 · 2⁻²⁴): the
+ * most, where Ψ is taken from Mills' ratios of 2, at T = ½. */
 TC_INLINE TcSegments tc_segments(TcMask mask, TcVec a, TcVec a1, TcVec t, TcVec d, TcReal thin) {
   TcSegments result;
 #if TC_SINGLE
   (void)thin;
-  if (TC_LIKELY(!tc_any(tc_gt(t, tc_set(0x1p-1F))))) return tc_segments_half(t, d);
+  if (TC_LIKELY(!tc_any(tc_gt(t, tc_set(0x1p-1F)))))
+    return tc_segments_half(t, d);
 #else
-  if (TC_UNLIKELY(thin > 0) && !tc_any(tc_gt(t, tc_set(thin)))) return tc_segments_thin(t, d);
-  if (TC_LIKELY(!tc_any(tc_gt(t, tc_set(0x1p-4))))) return tc_segments_16th(t, d);
-  if (TC_LIKELY(!tc_any(tc_gt(t, tc_set(0x1p-2))))) return tc_segments_4th(t, d);
+  if (TC_UNLIKELY(thin > 0) && !tc_any(tc_gt(t, tc_set(thin))))
+    return tc_segments_thin(t, d);
+  if (TC_LIKELY(!tc_any(tc_gt(t, tc_set(0x1p-4)))))
+    return tc_segments_16th(t, d);
+  if (TC_LIKELY(!tc_any(tc_gt(t, tc_set(0x1p-2)))))
+    return tc_segments_4th(t, d);
 #endif
   const TcVec near = a, far = a1; /* by memory: vectors as arguments would be passed there anyway */
   tc_segments_deep(mask, &near, &far, &result);
@@ -142,12 +155,12 @@ typedef struct TcLaneMoments {
   TcVec m0, m1, transmittance;
 } TcLaneMoments;
 
-#define TC_FIT_MOMENTS(name, FIT)                                                                      \
-  TC_FIT(tc_p_##name, TC_FIT_P_##FIT)                                                                  \
-  TC_FIT(tc_q_##name, TC_FIT_Q_##FIT)                                                                  \
-  TC_INLINE TcLaneMoments tc_moments_##name(TcVec t, TcVec d, TcVec g) {                               \
-    const TcVec x = t * t, p = tc_p_##name(x, d), q = t * tc_q_##name(x, d), half = 0.5 * g + 0.5;     \
-    return (TcLaneMoments){half * (p + q), half * (p - q), tc_madd(g, g, 2 * g) + 1};                  \
+#define TC_FIT_MOMENTS(name, FIT)                                                                                      \
+  TC_FIT(tc_p_##name, TC_FIT_P_##FIT)                                                                                  \
+  TC_FIT(tc_q_##name, TC_FIT_Q_##FIT)                                                                                  \
+  TC_INLINE TcLaneMoments tc_moments_##name(TcVec t, TcVec d, TcVec g) {                                               \
+    const TcVec x = t * t, p = tc_p_##name(x, d), q = t * tc_q_##name(x, d), half = 0.5 * g + 0.5;                     \
+    return (TcLaneMoments){half * (p + q), half * (p - q), tc_madd(g, g, 2 * g) + 1};                                  \
   }
 TC_FIT_MOMENTS(16th, 16TH)
 TC_FIT_MOMENTS(4th, 4TH)
@@ -158,8 +171,10 @@ TC_FIT_MOMENTS(one, ONE)
 TC_INLINE TcLaneMoments tc_moments_thick(TcVec a, TcVec a1) {
   const TcVec zero = tc_set(0), b = a1 - a, skip = tc_set(TC_SPECIAL_ROWS);
   const TcMask rises = tc_le(zero, b);
-  const TcVec first = tc_select(rises, zero, tc_set(TC_MILLS_ROWS)), rows = tc_select(rises, tc_set(TC_MILLS_ROWS), tc_set(TC_DAWSON_ROWS));
-  const TcVec r = tc_sqrt(tc_select(rises, b, -8 * b)), near = 1 / (r + a), far = 1 / (r + a1), e = tc_exp(-0.5 * a - 0.5 * a1);
+  const TcVec first = tc_select(rises, zero, tc_set(TC_MILLS_ROWS)),
+              rows = tc_select(rises, tc_set(TC_MILLS_ROWS), tc_set(TC_DAWSON_ROWS));
+  const TcVec r = tc_sqrt(tc_select(rises, b, -8 * b)), near = 1 / (r + a), far = 1 / (r + a1),
+              e = tc_exp(-0.5 * a - 0.5 * a1);
   const TcVec f = tc_special(first, rows, r * near) * near, g = tc_special(first + skip, rows, r * near) * near * near;
   const TcMask seen = tc_gt(e, zero); /* `far` may be infinite where nothing is seen of it */
   const TcVec f1 = tc_special(first, rows, r * far) * far, g1 = tc_special(first + skip, rows, r * far) * far * far;
@@ -183,11 +198,14 @@ TC_NOINLINE void tc_moments_deep(TcMask mask, const TcVec *near, const TcVec *fa
   *result = m;
 }
 
-/* tc_segment_moments() in the lanes of `mask`; a, a1 from 0 to TC_LARGEST_DENSITY, 0 in others. Relative errors of m0 and m1 are below 5e-15. */
+/* tc_segment_moments() in the lanes of `mask`; a, a1 from 0 to TC_LARGEST_DENSITY, 0 in others. Relative errors of m0
+ * and m1 are below 5e-15. */
 TC_INLINE TcLaneMoments tc_moments(TcMask mask, TcVec a, TcVec a1) {
   const TcVec t = 0.5 * a + 0.5 * a1, d = 0.5 * a1 - 0.5 * a;
-  if (TC_LIKELY(!tc_any(tc_gt(t, tc_set(0x1p-4))))) return tc_moments_16th(t, d, tc_g_16th(0.5 * t));
-  if (TC_LIKELY(!tc_any(tc_gt(t, tc_set(0x1p-2))))) return tc_moments_4th(t, d, tc_g_4th(0.5 * t));
+  if (TC_LIKELY(!tc_any(tc_gt(t, tc_set(0x1p-4)))))
+    return tc_moments_16th(t, d, tc_g_16th(0.5 * t));
+  if (TC_LIKELY(!tc_any(tc_gt(t, tc_set(0x1p-2)))))
+    return tc_moments_4th(t, d, tc_g_4th(0.5 * t));
   const TcVec near = a, far = a1;
   TcLaneMoments result;
   tc_moments_deep(mask, &near, &far, &result);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* clang-format off */
 /* Made by make_special.py, and included where a table is defined. Row i of a function's n covers t in [i, i + 1] / n; coefficients of
  * rising powers of v in [-1, 1]. */
   /* mills: largest error of the fit: 1.38e-17 */

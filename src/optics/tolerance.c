@@ -3,10 +3,12 @@
 
 #include <math.h>
 
-/* In units of 2^−53: a segment's weights 72 (segment_lanes.h; segment.h: 36), its extinction, length and colours, each from interpolation, 20; the product
- * of transmittances and the sum of colours over a block of 128 parts of segments 4 · 128; sums over blocks, of which there are segments / 64, 2 each, and
- * once more through the depth. */
-double tc_rounding(int64_t segments) { return (768 + (double)segments / 16) * 0x1p-53; }
+/* In units of 2^−53: a segment's weights 72 (segment_lanes.h; segment.h: 36), its extinction, length and colours, each
+ * from interpolation, 20; the product of transmittances and the sum of colours over a block of 128 parts of segments 4
+ * · 128; sums over blocks, of which there are segments / 64, 2 each, and once more through the depth. */
+double tc_rounding(int64_t segments) {
+  return (768 + (double)segments / 16) * 0x1p-53;
+}
 
 static double largest_extinction(const TcPieces *pieces) {
   double largest = 0;
@@ -21,7 +23,8 @@ TcTolerance tc_tolerance_begin(const TcPieces *pieces, double tolerance) {
   result.color = fmax(1, fmax(pieces->largest[0], fmax(pieces->largest[1], pieces->largest[2])));
   result.per_shift = 2.1 * result.color * largest_extinction(pieces);
   const double spare = tolerance - tc_rounding(1 << 14) * result.color;
-  if (!(spare > 0)) return result; /* rounding alone may take that much */
+  if (!(spare > 0))
+    return result; /* rounding alone may take that much */
   /* tc_segments_thin() is off by less than T⁴/90 relative to the opacity, for T ≤ 1/2. */
   result.thin = fmin(0.5, sqrt(sqrt(90 * spare / (4.1 * result.color))));
   result.relative = result.thin * result.thin * result.thin * result.thin / 90;
@@ -29,36 +32,48 @@ TcTolerance tc_tolerance_begin(const TcPieces *pieces, double tolerance) {
   return result;
 }
 
-/* In units of 2^−24: segments' weights and transmittances 2 · 102, the sums and products of a block of 64 segments 256, with some to spare. Blocks are summed
- * up in double precision. */
+/* In units of 2^−24: segments' weights and transmittances 2 · 102, the sums and products of a block of 64 segments 256,
+ * with some to spare. Blocks are summed up in double precision. */
 static const double single_rounding = 600 * 0x1p-24;
 
-bool tc_tolerance_single(const TcPieces *pieces, double tolerance, double largest, double length, TcTolerance *result, double *values) {
+bool tc_tolerance_single(const TcPieces *pieces, double tolerance, double largest, double length, TcTolerance *result,
+                         double *values) {
   const double most = 0x1p60, u = 0x1p-24; /* most: far from where numbers, or products of some of them, overflow */
-  if (pieces->scaled || pieces->count > 1 << 20) return false;
+  if (pieces->scaled || pieces->count > 1 << 20)
+    return false;
   TcTolerance half = tc_tolerance_begin(pieces, 0.5 * tolerance);
   *values = largest;
   for (int64_t i = 0; i <= pieces->count; ++i) {
     const double *row = pieces->rows_f64[i];
-    if (row[TC_PIECE_HIGH] < -largest || row[TC_PIECE_LOW] > largest) continue;
-    if (row[TC_PIECE_JUMP] > 0) return false;
+    if (row[TC_PIECE_HIGH] < -largest || row[TC_PIECE_LOW] > largest)
+      continue;
+    if (row[TC_PIECE_JUMP] > 0)
+      return false;
     half.per_spread = fmax(half.per_spread, row[TC_PIECE_STEEP]);
-    if (i < pieces->count && fabs(pieces->knots[i]) <= largest) *values = fmax(*values, fabs(pieces->knots[i]));
+    if (i < pieces->count && fabs(pieces->knots[i]) <= largest)
+      *values = fmax(*values, fabs(pieces->knots[i]));
   }
-  if (!(largest < most && half.per_spread < most && half.per_shift < most && half.color < most)) return false;
+  if (!(largest < most && half.per_spread < most && half.per_shift < most && half.color < most))
+    return false;
   half.thin = -1; /* its polynomials are shorter anyway */
   half.relative = 0;
   half.rounding = single_rounding;
   half.most = fmin(tolerance, 0.09);
-  const double least = half.per_spread * length * 32 * u * largest + half.per_shift * 64 * u * length + single_rounding * half.color + 0.5 * tolerance;
-  if (!(half.opaque < TC_OPAQUE_DEPTH && least <= 0.9 * half.most)) return false;
+  const double least = half.per_spread * length * 32 * u * largest + half.per_shift * 64 * u * length +
+                       single_rounding * half.color + 0.5 * tolerance;
+  if (!(half.opaque < TC_OPAQUE_DEPTH && least <= 0.9 * half.most))
+    return false;
   *result = half;
   return true;
 }
 
-double tc_tolerance_bound(const TcTolerance *tolerance, double depth, bool stopped, double alpha, int64_t segments, double moved) {
+double tc_tolerance_bound(const TcTolerance *tolerance, double depth, bool stopped, double alpha, int64_t segments,
+                          double moved) {
   const double color = tolerance->color, left = stopped ? exp(-depth) * color : 0;
-  if (!(moved < 0.09)) return color; /* no channel is off by more than what it may be */
+  if (!(moved < 0.09))
+    return color; /* no channel is off by more than what it may be */
   return left + moved +
-         alpha * color * (2 * tolerance->relative / (1 - tolerance->relative) + (tolerance->rounding > 0 ? tolerance->rounding : tc_rounding(segments)));
+         alpha * color *
+             (2 * tolerance->relative / (1 - tolerance->relative) +
+              (tolerance->rounding > 0 ? tolerance->rounding : tc_rounding(segments)));
 }

@@ -21,19 +21,22 @@ static TetcastStatus check_knots(TetcastContext *context, const Knots *knots, co
     const double *knot = knots->data + i * knots->width;
     for (int k = 0; k < knots->width; ++k) {
       if (!isfinite(knot[k])) {
-        return tc_error(context, TETCAST_ERROR_ARGUMENT, "transfer function: %s knot %" PRId64 " is not finite", what, i);
+        return tc_error(context, TETCAST_ERROR_ARGUMENT, "transfer function: %s knot %" PRId64 " is not finite", what,
+                        i);
       }
       if (k > 0 && (knot[k] < 0 || knot[k] > largest)) {
-        return tc_error(context, TETCAST_ERROR_ARGUMENT, "transfer function: %s knot %" PRId64 " at %g is %s: %g", what, i,
-                        knot[0], knot[k] < 0 ? "negative" : "above 1", knot[k]);
+        return tc_error(context, TETCAST_ERROR_ARGUMENT, "transfer function: %s knot %" PRId64 " at %g is %s: %g", what,
+                        i, knot[0], knot[k] < 0 ? "negative" : "above 1", knot[k]);
       }
     }
     if (i > 0 && knot[0] < knot[-knots->width]) {
-      return tc_error(context, TETCAST_ERROR_ARGUMENT, "transfer function: %s knots are not sorted: knot %" PRId64
-                      " at %g comes after %g", what, i, knot[0], knot[-knots->width]);
+      return tc_error(context, TETCAST_ERROR_ARGUMENT,
+                      "transfer function: %s knots are not sorted: knot %" PRId64 " at %g comes after %g", what, i,
+                      knot[0], knot[-knots->width]);
     }
     if (i > 1 && knot[0] == knot[-2 * knots->width]) {
-      return tc_error(context, TETCAST_ERROR_ARGUMENT, "transfer function: %s has more than two knots at %g", what, knot[0]);
+      return tc_error(context, TETCAST_ERROR_ARGUMENT, "transfer function: %s has more than two knots at %g", what,
+                      knot[0]);
     }
   }
   return TETCAST_OK;
@@ -44,14 +47,17 @@ static void interpolate(const Knots *knots, int64_t i, double x, double *values)
   const double part = isfinite(b[0] - a[0]) ? 1 : 0.5; /* halves of differences that are too large */
   const double whole = part * b[0] - part * a[0], w = (part * x - part * a[0]) / whole,
                v = (part * b[0] - part * x) / whole;
-  for (int k = 1; k < knots->width; ++k) values[k - 1] = v * a[k] + w * b[k];
+  for (int k = 1; k < knots->width; ++k)
+    values[k - 1] = v * a[k] + w * b[k];
 }
 
 /* Values just above x. */
 static void limit_above(const Knots *knots, double x, double *values) {
   int64_t i = 0; /* first knot > x */
-  while (i < knots->count && knots->data[i * knots->width] <= x) ++i;
-  if (i > 0 && (i == knots->count || knots->data[(i - 1) * knots->width] == x)) --i;
+  while (i < knots->count && knots->data[i * knots->width] <= x)
+    ++i;
+  if (i > 0 && (i == knots->count || knots->data[(i - 1) * knots->width] == x))
+    --i;
   else if (i > 0) {
     interpolate(knots, i - 1, x, values);
     return;
@@ -62,8 +68,10 @@ static void limit_above(const Knots *knots, double x, double *values) {
 /* Values just below x. */
 static void limit_below(const Knots *knots, double x, double *values) {
   int64_t i = 0; /* first knot ≥ x */
-  while (i < knots->count && knots->data[i * knots->width] < x) ++i;
-  if (i == knots->count) --i;
+  while (i < knots->count && knots->data[i * knots->width] < x)
+    ++i;
+  if (i == knots->count)
+    --i;
   else if (i > 0 && knots->data[i * knots->width] != x) {
     interpolate(knots, i - 1, x, values);
     return;
@@ -83,10 +91,13 @@ static TcOptics optics_limit(const Knots *extinction, const Knots *color, double
 static int64_t merge_knots(const Knots *a, const Knots *b, double limit, int exponent, double *merged) {
   int64_t i = 0, j = 0, n = 0;
   while (i < a->count || j < b->count) {
-    const double x = i < a->count ? a->data[i * a->width] : INFINITY, y = j < b->count ? b->data[j * b->width] : INFINITY;
+    const double x = i < a->count ? a->data[i * a->width] : INFINITY,
+                 y = j < b->count ? b->data[j * b->width] : INFINITY;
     const double next = fmax(-limit, fmin(x <= y ? x : y, limit));
-    if (x <= y) ++i;
-    else ++j;
+    if (x <= y)
+      ++i;
+    else
+      ++j;
     if (n == 0 || ldexp(merged[n - 1], -exponent) != ldexp(next, -exponent))
       ++n;
     merged[n - 1] = next;
@@ -94,39 +105,49 @@ static int64_t merge_knots(const Knots *a, const Knots *b, double limit, int exp
   return n;
 }
 
-static bool is_empty(const TcPiece *piece) { return piece->at_low.extinction == 0 && piece->at_high.extinction == 0; }
+static bool is_empty(const TcPiece *piece) {
+  return piece->at_low.extinction == 0 && piece->at_high.extinction == 0;
+}
 
-/* Where rays go from piece i, the next above or below: several pieces without extinction are passed at once. −1, count + 1: none. */
+/* Where rays go from piece i, the next above or below: several pieces without extinction are passed at once. −1, count
+ * + 1: none. */
 static int64_t next_piece(const TcPieces *pieces, int64_t i, int step) {
   const int64_t next = i + step, second = next + step;
-  if (second < 0 || second > pieces->count || !is_empty(&pieces->pieces[next]) || !is_empty(&pieces->pieces[second])) return next;
+  if (second < 0 || second > pieces->count || !is_empty(&pieces->pieces[next]) || !is_empty(&pieces->pieces[second]))
+    return next;
   return step > 0 ? pieces->pieces[next].filled_above : pieces->pieces[next].filled_below;
 }
 
-/* 1, or the power of two that makes the piece's width one in [1, 2), where a slope would overflow or lose digits without. */
+/* 1, or the power of two that makes the piece's width one in [1, 2), where a slope would overflow or lose digits
+ * without. */
 static double scale_of(const TcPiece *piece) {
-  if (piece->constant) return 1;
+  if (piece->constant)
+    return 1;
   const double width = piece->high - piece->low, *at[2] = {&piece->at_low.extinction, piece->at_low.color};
   const double *to[2] = {&piece->at_high.extinction, piece->at_high.color};
   int exponent;
   frexp(width, &exponent);
   for (int k = 0; k < 4; ++k) {
     const double rise = fabs(to[k > 0][k > 0 ? k - 1 : 0] - at[k > 0][k > 0 ? k - 1 : 0]) / width;
-    if (rise > 0 && !(rise > DBL_MIN && rise < DBL_MAX / 2)) return ldexp(1, 1 - exponent > 1023 ? 1023 : 1 - exponent);
+    if (rise > 0 && !(rise > DBL_MIN && rise < DBL_MAX / 2))
+      return ldexp(1, 1 - exponent > 1023 ? 1023 : 1 - exponent);
   }
   return width < DBL_MIN ? ldexp(1, 1023) : 1;
 }
 
 /* 2.1 C Δκ + Δc κ over the two optics, with C the largest colour and at least 1, κ the larger extinction. */
 static double change(const TcPieces *pieces, const TcOptics *a, const TcOptics *b) {
-  const double most = fmax(a->extinction, b->extinction), largest = fmax(1, fmax(pieces->largest[0], fmax(pieces->largest[1], pieces->largest[2])));
+  const double most = fmax(a->extinction, b->extinction),
+               largest = fmax(1, fmax(pieces->largest[0], fmax(pieces->largest[1], pieces->largest[2])));
   double color = 0;
-  for (int k = 0; most > 0 && k < 3; ++k) color = fmax(color, fabs(a->color[k] - b->color[k]));
+  for (int k = 0; most > 0 && k < 3; ++k)
+    color = fmax(color, fabs(a->color[k] - b->color[k]));
   return 2.1 * largest * fabs(a->extinction - b->extinction) + color * most;
 }
 
 static double steepness(const TcPieces *pieces, int64_t i) {
-  if (i < 0 || i > pieces->count || pieces->pieces[i].constant) return 0;
+  if (i < 0 || i > pieces->count || pieces->pieces[i].constant)
+    return 0;
   const TcPiece *piece = &pieces->pieces[i];
   return change(pieces, &piece->at_low, &piece->at_high) / (piece->high - piece->low);
 }
@@ -143,18 +164,26 @@ static void make_row(TcPieces *pieces, int64_t i) {
   const TcOptics *from = rises ? &piece->at_low : &piece->at_high, *to = rises ? &piece->at_high : &piece->at_low;
   const double scale = scale_of(piece);
   const double width = (rises ? piece->high - piece->low : piece->low - piece->high) * scale;
-  double word[TC_PIECE_WORDS] = {
-    [TC_PIECE_LOW] = piece->low, [TC_PIECE_HIGH] = piece->high, [TC_PIECE_FROM] = rises ? piece->low : piece->high,
-    [TC_PIECE_EXTINCTION] = from->extinction, [TC_PIECE_FILLED] = !is_empty(piece), [TC_PIECE_SCALE] = scale,
-    [TC_PIECE_STEEP] = steepness(pieces, i), [TC_PIECE_BESIDE] = fmax(steepness(pieces, i - 1), steepness(pieces, i + 1)),
-    [TC_PIECE_JUMP] = jump(pieces, i)};
-  if (piece->constant) word[TC_PIECE_FROM] = isfinite(piece->low) ? piece->low : isfinite(piece->high) ? piece->high : 0;
-  else word[TC_PIECE_RISE] = (to->extinction - from->extinction) / width;
+  double word[TC_PIECE_WORDS] = {[TC_PIECE_LOW] = piece->low,
+                                 [TC_PIECE_HIGH] = piece->high,
+                                 [TC_PIECE_FROM] = rises ? piece->low : piece->high,
+                                 [TC_PIECE_EXTINCTION] = from->extinction,
+                                 [TC_PIECE_FILLED] = !is_empty(piece),
+                                 [TC_PIECE_SCALE] = scale,
+                                 [TC_PIECE_STEEP] = steepness(pieces, i),
+                                 [TC_PIECE_BESIDE] = fmax(steepness(pieces, i - 1), steepness(pieces, i + 1)),
+                                 [TC_PIECE_JUMP] = jump(pieces, i)};
+  if (piece->constant)
+    word[TC_PIECE_FROM] = isfinite(piece->low) ? piece->low : isfinite(piece->high) ? piece->high : 0;
+  else
+    word[TC_PIECE_RISE] = (to->extinction - from->extinction) / width;
   for (int k = 0; k < 3; ++k) {
     word[TC_PIECE_COLOR + k] = from->color[k];
-    if (!piece->constant) word[TC_PIECE_COLOR_RISE + k] = (to->color[k] - from->color[k]) / width;
+    if (!piece->constant)
+      word[TC_PIECE_COLOR_RISE + k] = (to->color[k] - from->color[k]) / width;
   }
-  if (scale != 1) pieces->scaled = true;
+  if (scale != 1)
+    pieces->scaled = true;
   for (int k = 0; k < TC_PIECE_WORDS; ++k) {
     pieces->rows_f64[i][k] = word[k];
     pieces->rows_f32[i][k] = (float)fmax(-FLT_MAX, fmin(word[k], FLT_MAX)); /* beyond: not used (tolerance.h) */
@@ -164,8 +193,10 @@ static void make_row(TcPieces *pieces, int64_t i) {
   memcpy(&pieces->rows_f64[i][TC_PIECE_ABOVE], next, sizeof next);
   memcpy(&pieces->rows_f32[i][TC_PIECE_ABOVE], next_f32, sizeof next_f32);
   for (int k = 0; k < TC_PIECE_WORDS; ++k) { /* copied as they are: some are no reals */
-    if (i < TC_LOOKUP_F64) memcpy(&pieces->columns_f64[k][i], &pieces->rows_f64[i][k], sizeof(double));
-    if (i < TC_LOOKUP_F32) memcpy(&pieces->columns_f32[k][i], &pieces->rows_f32[i][k], sizeof(float));
+    if (i < TC_LOOKUP_F64)
+      memcpy(&pieces->columns_f64[k][i], &pieces->rows_f64[i][k], sizeof(double));
+    if (i < TC_LOOKUP_F32)
+      memcpy(&pieces->columns_f32[k][i], &pieces->rows_f32[i][k], sizeof(float));
   }
 }
 
@@ -177,15 +208,18 @@ static void look_at_pieces(TetcastTransferFunction *transfer) {
   pieces->one_color = true;
   int64_t above = pieces->count + 1, below = -1;
   for (int64_t i = pieces->count; i >= 0; --i) {
-    if (!is_empty(&transfer->piece[i])) above = i;
+    if (!is_empty(&transfer->piece[i]))
+      above = i;
     transfer->piece[i].filled_above = above;
   }
   for (int64_t i = 0; i <= pieces->count; ++i) {
     TcPiece *piece = &transfer->piece[i];
-    if (!is_empty(piece)) below = i;
+    if (!is_empty(piece))
+      below = i;
     piece->filled_below = below;
     piece->inverse = piece->constant ? 0 : 1 / (piece->high - piece->low);
-    if (is_empty(piece)) continue;
+    if (is_empty(piece))
+      continue;
     for (int k = 0; k < 3; ++k) {
       pieces->largest[k] = fmax(pieces->largest[k], fmax(piece->at_low.color[k], piece->at_high.color[k]));
     }
@@ -193,7 +227,8 @@ static void look_at_pieces(TetcastTransferFunction *transfer) {
   for (int64_t i = 0; i <= pieces->count; ++i) {
     const TcPiece *piece = &transfer->piece[i];
     for (int k = 0; !is_empty(piece) && k < 3; ++k) {
-      if (piece->at_low.color[k] != pieces->largest[k] || piece->at_high.color[k] != pieces->largest[k]) pieces->one_color = false;
+      if (piece->at_low.color[k] != pieces->largest[k] || piece->at_high.color[k] != pieces->largest[k])
+        pieces->one_color = false;
     }
     make_row(pieces, i);
   }
@@ -217,10 +252,14 @@ static void make_pieces(TetcastTransferFunction *transfer, int value_exponent, i
   double *x = transfer->knots;
   for (int64_t i = 0; i <= n; ++i) {
     TcPiece *piece = &transfer->piece[i];
-    if (i > 0) piece->at_low = optics_limit(&extinction, &color, x[i - 1], limit_above);
-    if (i < n) piece->at_high = optics_limit(&extinction, &color, x[i], limit_below);
-    if (i == 0) piece->at_low = piece->at_high;
-    if (i == n) piece->at_high = piece->at_low;
+    if (i > 0)
+      piece->at_low = optics_limit(&extinction, &color, x[i - 1], limit_above);
+    if (i < n)
+      piece->at_high = optics_limit(&extinction, &color, x[i], limit_below);
+    if (i == 0)
+      piece->at_low = piece->at_high;
+    if (i == n)
+      piece->at_high = piece->at_low;
     scale_optics(&piece->at_low, length_exponent);
     scale_optics(&piece->at_high, length_exponent);
   }
@@ -241,7 +280,8 @@ static void make_pieces(TetcastTransferFunction *transfer, int value_exponent, i
 }
 
 static double extinction_of(const TetcastTransferFunctionDesc *desc, double opacity) {
-  if (desc->opacity_model != TETCAST_OPACITY_UNIT_DISTANCE) return opacity / desc->unit_distance;
+  if (desc->opacity_model != TETCAST_OPACITY_UNIT_DISTANCE)
+    return opacity / desc->unit_distance;
   const double largest = 1 - 0x1p-53;
   return -log1p(-(opacity < largest ? opacity : largest)) / desc->unit_distance;
 }
@@ -249,9 +289,11 @@ static double extinction_of(const TetcastTransferFunctionDesc *desc, double opac
 static TetcastStatus check_desc(TetcastContext *context, const TetcastTransferFunctionDesc *desc) {
   const Knots color = {desc->color, desc->color_count, 4};
   TetcastStatus status = check_knots(context, &color, "color", INFINITY);
-  if (status) return status;
+  if (status)
+    return status;
   if ((desc->extinction != NULL) == (desc->opacity != NULL)) {
-    return tc_error(context, TETCAST_ERROR_ARGUMENT, "transfer function: either extinction or opacity is needed, not %s",
+    return tc_error(context, TETCAST_ERROR_ARGUMENT,
+                    "transfer function: either extinction or opacity is needed, not %s",
                     desc->opacity ? "both" : "none");
   }
   if (desc->extinction) {
@@ -266,8 +308,10 @@ static TetcastStatus check_desc(TetcastContext *context, const TetcastTransferFu
   status = check_knots(context, &opacity, "opacity", 1);
   for (int64_t i = 0; !status && i < desc->opacity_count; ++i) {
     if (!isfinite(extinction_of(desc, desc->opacity[2 * i + 1]))) {
-      status = tc_error(context, TETCAST_ERROR_ARGUMENT, "transfer function: unit distance %g is too small: the extinction of opacity "
-                        "knot %" PRId64 " overflows", desc->unit_distance, i);
+      status = tc_error(context, TETCAST_ERROR_ARGUMENT,
+                        "transfer function: unit distance %g is too small: the extinction of opacity "
+                        "knot %" PRId64 " overflows",
+                        desc->unit_distance, i);
     }
   }
   return status;
@@ -276,22 +320,27 @@ static TetcastStatus check_desc(TetcastContext *context, const TetcastTransferFu
 static TetcastStatus create(TetcastContext *context, const TetcastTransferFunctionDesc *desc, int value_exponent,
                             int length_exponent, TetcastTransferFunction **out) {
   const TetcastStatus status = check_desc(context, desc);
-  if (status) return status;
+  if (status)
+    return status;
   const int64_t count = desc->extinction ? desc->extinction_count : desc->opacity_count;
   const int64_t most = desc->color_count + count;
   TetcastTransferFunction *transfer;
-  if (!tc_allocate_array(context, (void **)&transfer, 1, sizeof *transfer, "transfer function")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&transfer, 1, sizeof *transfer, "transfer function"))
+    return TETCAST_ERROR_MEMORY;
   memset(transfer, 0, sizeof *transfer);
   transfer->context = context;
   TcPieces *pieces = &transfer->pieces;
   transfer->color_count = desc->color_count;
   transfer->extinction_count = count;
-  if (!tc_allocate_array(context, (void **)&transfer->color, desc->color_count, 4 * sizeof(double), "transfer function") ||
+  if (!tc_allocate_array(context, (void **)&transfer->color, desc->color_count, 4 * sizeof(double),
+                         "transfer function") ||
       !tc_allocate_array(context, (void **)&transfer->extinction, count, 2 * sizeof(double), "transfer function") ||
       !tc_allocate_array(context, (void **)&transfer->knots, most, sizeof(double), "transfer function") ||
       !tc_allocate_array(context, (void **)&transfer->piece, most + 1, sizeof *transfer->piece, "transfer function") ||
-      !tc_allocate_array(context, (void **)&pieces->rows_f64, most + 1, sizeof *pieces->rows_f64, "transfer function") ||
-      !tc_allocate_array(context, (void **)&pieces->rows_f32, most + 1, sizeof *pieces->rows_f32, "transfer function")) {
+      !tc_allocate_array(context, (void **)&pieces->rows_f64, most + 1, sizeof *pieces->rows_f64,
+                         "transfer function") ||
+      !tc_allocate_array(context, (void **)&pieces->rows_f32, most + 1, sizeof *pieces->rows_f32,
+                         "transfer function")) {
     tc_transfer_destroy(transfer);
     return TETCAST_ERROR_MEMORY;
   }
@@ -326,7 +375,8 @@ TetcastStatus tc_transfer_copy(TetcastContext *context, const TetcastTransferFun
 }
 
 void tc_transfer_destroy(TetcastTransferFunction *transfer) {
-  if (!transfer) return;
+  if (!transfer)
+    return;
   TetcastContext *context = transfer->context;
   tc_release(context, transfer->color);
   tc_release(context, transfer->extinction);
@@ -341,8 +391,10 @@ int64_t tc_piece_above(const TcPieces *pieces, double s) {
   int64_t low = 0, high = pieces->count;
   while (low < high) {
     const int64_t middle = (low + high) / 2;
-    if (pieces->knots[middle] <= s) low = middle + 1;
-    else high = middle;
+    if (pieces->knots[middle] <= s)
+      low = middle + 1;
+    else
+      high = middle;
   }
   return low;
 }
@@ -351,8 +403,10 @@ int64_t tc_piece_below(const TcPieces *pieces, double s) {
   int64_t low = 0, high = pieces->count;
   while (low < high) {
     const int64_t middle = (low + high) / 2;
-    if (pieces->knots[middle] < s) low = middle + 1;
-    else high = middle;
+    if (pieces->knots[middle] < s)
+      low = middle + 1;
+    else
+      high = middle;
   }
   return low;
 }
@@ -362,10 +416,15 @@ static TcOptics optics_at(const TcPiece *piece, double s) {
   const double width = piece->high - piece->low, w = (s - piece->low) / width, v = (piece->high - s) / width;
   TcOptics optics;
   optics.extinction = v * piece->at_low.extinction + w * piece->at_high.extinction;
-  for (int k = 0; k < 3; ++k) optics.color[k] = v * piece->at_low.color[k] + w * piece->at_high.color[k];
+  for (int k = 0; k < 3; ++k)
+    optics.color[k] = v * piece->at_low.color[k] + w * piece->at_high.color[k];
   return optics;
 }
 
-TcOptics tc_piece_at(const TcPiece *piece, double s) { return piece->constant ? piece->at_low : optics_at(piece, s); }
+TcOptics tc_piece_at(const TcPiece *piece, double s) {
+  return piece->constant ? piece->at_low : optics_at(piece, s);
+}
 
-TcOptics tc_pieces_at(const TcPieces *pieces, double s) { return tc_piece_at(&pieces->pieces[tc_piece_above(pieces, s)], s); }
+TcOptics tc_pieces_at(const TcPieces *pieces, double s) {
+  return tc_piece_at(&pieces->pieces[tc_piece_above(pieces, s)], s);
+}

@@ -17,16 +17,18 @@ typedef struct TcPiece {
   double low, high; /* scalars at its ends; the outermost pieces are constant and end at ∓infinity */
   TcOptics at_low, at_high;
   double inverse; /* 1 / (high − low), which may be infinite; 0 for a constant piece */
-  int64_t filled_above, filled_below; /* the nearest piece that has extinction, this one included; count + 1, −1: none */
+  int64_t filled_above,
+      filled_below; /* the nearest piece that has extinction, this one included; count + 1, −1: none */
   bool constant;
 } TcPiece;
 
-/* A piece as kernels load it, in either precision: a row of numbers. Extinction and colour at a scalar s of the piece are
- *     extinction + ((s − from) scale) rise,   colour + ((s − from) scale) color_rise.
- * `from` is the end where extinction is least, so that (s − from) rise ≥ 0: nothing cancels, and extinction is good to four units in the last
- * place. `scale` is 1, but where a piece is so narrow or so wide that a slope would overflow or underflow: kernels that don't know of that
- * may not be used then (TcPieces.scaled). `above` and `below` are the next pieces either way, several without extinction passed at once;
- * count + 1, −1: none. These two are integers as wide as the row's other numbers. */
+/* A piece as kernels load it, in either precision: a row of numbers. Extinction and colour at a scalar s of the piece
+ * are extinction + ((s − from) scale) rise,   colour + ((s − from) scale) color_rise. `from` is the end where
+ * extinction is least, so that (s − from) rise ≥ 0: nothing cancels, and extinction is good to four units in the last
+ * place. `scale` is 1, but where a piece is so narrow or so wide that a slope would overflow or underflow: kernels that
+ * don't know of that may not be used then (TcPieces.scaled). `above` and `below` are the next pieces either way,
+ * several without extinction passed at once; count + 1, −1: none. These two are integers as wide as the row's other
+ * numbers. */
 enum {
   TC_PIECE_LOW,
   TC_PIECE_HIGH,
@@ -39,13 +41,16 @@ enum {
   TC_PIECE_SCALE,
   TC_PIECE_ABOVE,
   TC_PIECE_BELOW,
-  TC_PIECE_STEEP, /* how much light changes with the scalar in the piece, at most: 2.1 C |rise| + largest colour_rise · largest extinction; C: tolerance.h */
+  TC_PIECE_STEEP, /* how much light changes with the scalar in the piece, at most: 2.1 C |rise| + largest colour_rise ·
+                     largest extinction; C: tolerance.h */
   TC_PIECE_BESIDE, /* the same, of the pieces below and above */
-  TC_PIECE_JUMP,  /* how much it changes at once at the piece's ends, at most: 2.1 C Δextinction + Δcolour · largest extinction */
+  TC_PIECE_JUMP,   /* how much it changes at once at the piece's ends, at most: 2.1 C Δextinction + Δcolour · largest
+                      extinction */
   TC_PIECE_WORDS = 20
 };
 
-/* As many pieces as a vector of AVX-512 has lanes may be looked up by a permutation: word k of piece i is columns[k][i]. */
+/* As many pieces as a vector of AVX-512 has lanes may be looked up by a permutation: word k of piece i is
+ * columns[k][i]. */
 enum { TC_LOOKUP_F64 = 8, TC_LOOKUP_F32 = 16 };
 
 /* count + 1 pieces between count distinct knots: piece i ends at knot[i], piece i + 1 begins there. */
@@ -81,8 +86,10 @@ struct TetcastTransferFunction {
 /* Bound on the magnitude of scalars as the volume stores them: interpolation between them doesn't overflow. */
 #define TC_LARGEST_SCALAR 0x1p1000
 
-TetcastStatus tc_transfer_create(TetcastContext *context, const TetcastTransferFunctionDesc *desc, TetcastTransferFunction **out);
-TetcastStatus tc_transfer_copy(TetcastContext *context, const TetcastTransferFunction *source, TetcastTransferFunction **out);
+TetcastStatus tc_transfer_create(TetcastContext *context, const TetcastTransferFunctionDesc *desc,
+                                 TetcastTransferFunction **out);
+TetcastStatus tc_transfer_copy(TetcastContext *context, const TetcastTransferFunction *source,
+                               TetcastTransferFunction **out);
 
 /* A copy with pieces in other units: scalars times 2^−value_exponent, lengths times 2^−length_exponent, so extinction
  * times 2^length_exponent. */
@@ -91,8 +98,8 @@ TetcastStatus tc_transfer_rescale(TetcastContext *context, const TetcastTransfer
 void tc_transfer_destroy(TetcastTransferFunction *transfer);
 
 /* Colour map `name` over [low, high] with an extinction that rises from 0 to `extinction`. */
-TetcastStatus tc_transfer_create_preset(TetcastContext *context, const char *name, double low, double high, double extinction,
-                                        TetcastTransferFunction **out);
+TetcastStatus tc_transfer_create_preset(TetcastContext *context, const char *name, double low, double high,
+                                        double extinction, TetcastTransferFunction **out);
 const char *tc_preset_name(int i);
 
 /* Optical depth beyond which e^−τ is zero in double precision: what lies behind can't change a bit of the colour. */

@@ -13,12 +13,15 @@ static const double DEGREE = 0.017453292519943295;
 /* Makes v a unit vector; false if it has no direction. Scaled first, so that no unit overflows. */
 static bool normalize(double v[3]) {
   const double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
-  if (!(largest > 0) || !isfinite(largest)) return false;
+  if (!(largest > 0) || !isfinite(largest))
+    return false;
   int exponent;
   frexp(largest, &exponent);
-  for (int k = 0; k < 3; ++k) v[k] = ldexp(v[k], -exponent);
+  for (int k = 0; k < 3; ++k)
+    v[k] = ldexp(v[k], -exponent);
   const double length = sqrt(tc_dot(v, v));
-  for (int k = 0; k < 3; ++k) v[k] /= length;
+  for (int k = 0; k < 3; ++k)
+    v[k] /= length;
   return true;
 }
 
@@ -30,17 +33,19 @@ TetcastCamera tc_camera_default(const double bounds[6], double aspect) {
     half[k] = 0.5 * bounds[2 * k + 1] - 0.5 * bounds[2 * k];
   }
   double radius = hypot(hypot(half[0], half[1]), half[2]);
-  if (!(radius > 0)) radius = 0.5; /* a point: any distance will do */
+  if (!(radius > 0))
+    radius = 0.5; /* a point: any distance will do */
   double half_angle = 15 * DEGREE;
-  if (aspect > 0 && aspect < 1) half_angle = atan(tan(half_angle) * aspect);
+  if (aspect > 0 && aspect < 1)
+    half_angle = atan(tan(half_angle) * aspect);
   memcpy(camera.eye, camera.target, sizeof camera.eye);
   camera.eye[2] += radius / sin(half_angle);
   camera.height = aspect > 0 && aspect < 1 ? 2 * radius / aspect : 2 * radius;
   return camera;
 }
 
-TetcastStatus tc_view_create(TetcastContext *context, const TetcastCamera *camera, const TetcastVolume *volume, double aspect,
-                             TcView *view) {
+TetcastStatus tc_view_create(TetcastContext *context, const TetcastCamera *camera, const TetcastVolume *volume,
+                             double aspect, TcView *view) {
   view->orthographic = camera->projection == TETCAST_ORTHOGRAPHIC;
   for (int k = 0; k < 3; ++k) {
     view->eye[k] = ldexp(camera->eye[k], -volume->exponent);
@@ -51,16 +56,18 @@ TetcastStatus tc_view_create(TetcastContext *context, const TetcastCamera *camer
     }
   }
   if (!normalize(view->forward)) {
-    return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: eye and target are the same point (%g, %g, %g)", camera->eye[0],
-                    camera->eye[1], camera->eye[2]);
+    return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: eye and target are the same point (%g, %g, %g)",
+                    camera->eye[0], camera->eye[1], camera->eye[2]);
   }
-  if (normalize(view->up)) tc_cross(view->forward, view->up, view->right);
+  if (normalize(view->up))
+    tc_cross(view->forward, view->up, view->right);
   if (!normalize(view->up) || tc_dot(view->right, view->right) < 1e-24 || !normalize(view->right)) {
-    return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: up (%g, %g, %g) is parallel to the direction of view", camera->up[0],
-                    camera->up[1], camera->up[2]);
+    return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: up (%g, %g, %g) is parallel to the direction of view",
+                    camera->up[0], camera->up[1], camera->up[2]);
   }
   tc_cross(view->right, view->forward, view->up);
-  const double half = view->orthographic ? ldexp(0.5 * camera->height, -volume->exponent) : tan(0.5 * camera->fovy * DEGREE);
+  const double half =
+      view->orthographic ? ldexp(0.5 * camera->height, -volume->exponent) : tan(0.5 * camera->fovy * DEGREE);
   if (!(half * aspect < TOO_FAR && half < TOO_FAR)) {
     return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: a height of %g is too large for the mesh",
                     camera->height);

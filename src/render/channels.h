@@ -10,7 +10,8 @@
 
 enum { TC_CHANNELS = 6 };
 
-/* What a pixel's values are made from: what was gathered, as means over its samples (gather/emission.h, gather/coefficients.h, gather/value.h). */
+/* What a pixel's values are made from: what was gathered, as means over its samples (gather/emission.h,
+ * gather/coefficients.h, gather/value.h). */
 typedef struct TcGathered {
   const double *sums;
   const TcCoefficients *coefficients; /* NULL: a transfer function */

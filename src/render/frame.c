@@ -6,7 +6,8 @@
 
 TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *desc, TetcastFrame **out) {
   TetcastFrame *frame;
-  if (!tc_allocate_array(context, (void **)&frame, 1, sizeof *frame, "frame")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&frame, 1, sizeof *frame, "frame"))
+    return TETCAST_ERROR_MEMORY;
   memset(frame, 0, sizeof *frame);
   frame->context = context;
   frame->width = desc->width;
@@ -25,7 +26,8 @@ TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *d
   }
   frame->groups = desc->groups;
   for (int i = 0; i < TC_CHANNELS; ++i) {
-    if (!(desc->channels & tc_channels[i].info.channel)) continue;
+    if (!(desc->channels & tc_channels[i].info.channel))
+      continue;
     const size_t pixel = (size_t)tc_frame_depth(frame, i) * tc_type_size(desc->type);
     if (!tc_allocate_array(context, &frame->channel[i], desc->width * desc->height, pixel, "channel")) {
       tc_frame_destroy(frame);
@@ -38,9 +40,11 @@ TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *d
 }
 
 void tc_frame_destroy(TetcastFrame *frame) {
-  if (!frame) return;
+  if (!frame)
+    return;
   tc_release(frame->context, frame->memory);
-  for (int i = 0; i < TC_CHANNELS; ++i) tc_release(frame->context, frame->channel[i]);
+  for (int i = 0; i < TC_CHANNELS; ++i)
+    tc_release(frame->context, frame->channel[i]);
   tc_release(frame->context, frame);
 }
 
@@ -49,8 +53,10 @@ static void store_channel(TetcastFrame *frame, int channel, int64_t x, int64_t y
   const int64_t first = (y * frame->width + x) * count;
   for (int i = 0; i < count; ++i) {
     const double value = tc_channels[channel].value(gathered, i);
-    if (frame->type == TETCAST_TYPE_FLOAT64) ((double *)frame->channel[channel])[first + i] = value;
-    else ((float *)frame->channel[channel])[first + i] = (float)value;
+    if (frame->type == TETCAST_TYPE_FLOAT64)
+      ((double *)frame->channel[channel])[first + i] = value;
+    else
+      ((float *)frame->channel[channel])[first + i] = (float)value;
   }
 }
 
@@ -69,7 +75,8 @@ void tc_frame_recolor(TetcastFrame *frame, const TcPieces *colors) {
       } else {
         float *pixel = (float *)(void *)row + 4 * x;
         tc_color_value(colors, (double)((const float *)values)[i], (double)pixel[3], rgba);
-        for (int k = 0; k < 3; ++k) pixel[k] = (float)rgba[k];
+        for (int k = 0; k < 3; ++k)
+          pixel[k] = (float)rgba[k];
       }
     }
   }
@@ -86,12 +93,15 @@ double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, TcGathered *gat
     const float pixel[4] = {(float)rgba[0], (float)rgba[1], (float)rgba[2], (float)rgba[3]};
     memcpy(row + x * 4 * (int64_t)sizeof(float), pixel, sizeof pixel);
     double rounding = 0;
-    for (int k = 0; k < 4; ++k) rounding = fmax(rounding, fabs((double)pixel[k] - rgba[k]));
+    for (int k = 0; k < 4; ++k)
+      rounding = fmax(rounding, fabs((double)pixel[k] - rgba[k]));
     gathered->error += rounding;
-    if (gathered->error > 0) gathered->error = (double)nextafterf((float)gathered->error, INFINITY);
+    if (gathered->error > 0)
+      gathered->error = (double)nextafterf((float)gathered->error, INFINITY);
   }
   for (int i = 0; i < TC_CHANNELS; ++i) {
-    if (frame->channel[i]) store_channel(frame, i, x, y, gathered);
+    if (frame->channel[i])
+      store_channel(frame, i, x, y, gathered);
   }
   return gathered->error;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The kernels of one number type and instruction set: this file is compiled once for each, with TC_LANES, TC_SINGLE and TC_LANES_NAME given by the build
- * (CMakeLists.txt); it makes the table tc_kernels_NAME. */
+/* The kernels of one number type and instruction set: this file is compiled once for each, with TC_LANES, TC_SINGLE and
+ * TC_LANES_NAME given by the build (CMakeLists.txt); it makes the table tc_kernels_NAME. */
 #include "render/kernel.h"
 
 #include "gather/gather.h"
@@ -33,27 +33,34 @@ typedef struct State {
 /* ── the loop ── */
 
 /* With TC_BOUND, the integral of the scalar's error over a cell of which `length` is crossed (tolerance.h). */
-TC_INLINE TcVec spread_of(const unsigned on, const TcGround *ground, const TcPacket *p, const TcCrossed *crossed, TcVec length) {
+TC_INLINE TcVec spread_of(const unsigned on, const TcGround *ground, const TcPacket *p, const TcCrossed *crossed,
+                          TcVec length) {
   const TcResolution *r = &ground->resolution;
-  const TcVec beside = tc_madd(tc_set((TcReal)r->relative), p->at.reach, tc_set((TcReal)r->beside)), depth = tc_set((TcReal)r->depth);
-  if (on & TC_WEIGHTS) return tc_madd(beside + beside, tc_madd(length, p->at.tilt.one, p->at.tilt.z), depth);
+  const TcVec beside = tc_madd(tc_set((TcReal)r->relative), p->at.reach, tc_set((TcReal)r->beside)),
+              depth = tc_set((TcReal)r->depth);
+  if (on & TC_WEIGHTS)
+    return tc_madd(beside + beside, tc_madd(length, p->at.tilt.one, p->at.tilt.z), depth);
   const TcVec change = tc_abs(crossed->s1 - crossed->s0);
-  TcVec tilted = tc_madd(change, p->at.tilt.z, length * (on & TC_CORNERS ? p->at.tilt.one * crossed->range : p->at.tilt.s));
-  if (!(on & TC_CORNERS)) tilted = tc_min(tilted, tc_madd(change, crossed->tilt.z, length * crossed->tilt.s));
+  TcVec tilted =
+      tc_madd(change, p->at.tilt.z, length * (on & TC_CORNERS ? p->at.tilt.one * crossed->range : p->at.tilt.s));
+  if (!(on & TC_CORNERS))
+    tilted = tc_min(tilted, tc_madd(change, crossed->tilt.z, length * crossed->tilt.s));
   return tc_madd(beside + beside, tilted, tc_madd(length, tc_set((TcReal)r->value), change * depth));
 }
 
-/* What of the cells just crossed lies beyond what was seen, and within the rays' intervals. Rounding, or a cell that is turned inside out, can make a
- * face's depth less than that of the face before: such a segment counts for nothing, and the next one for what it has beyond. So lengths along a path
- * add up to its last depth minus its first, whatever happens in between. Returns the lanes whose rays end here. */
-TC_INLINE TcMask add_segment(const int which, const unsigned on, const TcGround *ground, const TcGatherJob *job, Packet *packet, TcCrossed *crossed,
-                             TcWorker *worker) {
+/* What of the cells just crossed lies beyond what was seen, and within the rays' intervals. Rounding, or a cell that is
+ * turned inside out, can make a face's depth less than that of the face before: such a segment counts for nothing, and
+ * the next one for what it has beyond. So lengths along a path add up to its last depth minus its first, whatever
+ * happens in between. Returns the lanes whose rays end here. */
+TC_INLINE TcMask add_segment(const int which, const unsigned on, const TcGround *ground, const TcGatherJob *job,
+                             Packet *packet, TcCrossed *crossed, TcWorker *worker) {
   TcPacket *p = &packet->walk;
   const TcVec from = p->seen;
   TcVec z1 = p->at.z;
   TcMask moved = crossed->mask;
   const TcMask ends = tc_and(moved, tc_lt(p->rays.end, z1));
-  TcPassage passage = {.s0 = crossed->s0, .s1 = crossed->s1, .cell = p->from, .walk = p, .crossed = moved, .partial = false};
+  TcPassage passage = {
+      .s0 = crossed->s0, .s1 = crossed->s1, .cell = p->from, .walk = p, .crossed = moved, .partial = false};
   moved = tc_and(moved, tc_gt(z1, from));
   const TcMask behind = tc_and(moved, tc_lt(crossed->z, from));
   if (TC_UNLIKELY(tc_any(tc_or(behind, ends)))) { /* at the eye, where the mesh folds, at the ray's end */
@@ -71,15 +78,19 @@ TC_INLINE TcMask add_segment(const int which, const unsigned on, const TcGround 
   worker->segments += __builtin_popcount(tc_bits(moved));
   p->seen = tc_select(moved, z1, from);
   passage.length = z1 - from;
-  if (on & TC_BOUND) passage.spread = spread_of(on, ground, p, crossed, passage.length);
-  if (on & TC_BOUND && on & TC_ASSOCIATIONS) p->shift += tc_select(moved, tc_packet_shift(ground, p), tc_set(0));
+  if (on & TC_BOUND)
+    passage.spread = spread_of(on, ground, p, crossed, passage.length);
+  if (on & TC_BOUND && on & TC_ASSOCIATIONS)
+    p->shift += tc_select(moved, tc_packet_shift(ground, p), tc_set(0));
   tc_gather_segment(which, on, job, &packet->gather, moved, &passage);
   return ends;
 }
 
-/* Steps of packets until one has to be looked at: because all its lanes have ended, or one that may set out anew has. Of most rays only the face where
- * they leave is left when they end; they need not be looked at one by one, and what is hard to predict is not branched on. */
-TC_INLINE void advance(const int which, const unsigned on, const TcGround *given_ground, const TcGatherJob *job, TcWorker *worker, Packet *packet) {
+/* Steps of packets until one has to be looked at: because all its lanes have ended, or one that may set out anew has.
+ * Of most rays only the face where they leave is left when they end; they need not be looked at one by one, and what is
+ * hard to predict is not branched on. */
+TC_INLINE void advance(const int which, const unsigned on, const TcGround *given_ground, const TcGatherJob *job,
+                       TcWorker *worker, Packet *packet) {
   const TcGround ground = *given_ground;
   bool halt = false;
   EACH_PACKET {
@@ -129,28 +140,33 @@ TC_INLINE void advance(const int which, const unsigned on, const TcGround *given
   }
   EACH_PACKET {
     TcPacket *p = &packet[i].walk;
-    if (p->waiting && (!tc_any(p->active) || p->waiting & p->again)) tc_packet_arrive(ground.shell, p);
+    if (p->waiting && (!tc_any(p->active) || p->waiting & p->again))
+      tc_packet_arrive(ground.shell, p);
   }
 }
 
 #if TC_LANES == 1
 /* The cells of a volume that Embree holds one by one, in the order in which the ray enters them. */
-TC_INLINE void advance_cells(const int which, const unsigned on, const TcGround *ground, const TcGatherJob *job, TcWorker *worker, Packet *packet) {
+TC_INLINE void advance_cells(const int which, const unsigned on, const TcGround *ground, const TcGatherJob *job,
+                             TcWorker *worker, Packet *packet) {
   TcPacket *p = &packet->walk;
   const TcHits *hits = p->hits;
   for (int64_t i = 0; i < hits->count; ++i) {
     const uint32_t cell = hits->data[i].id;
     TcCellFaces faces;
-    if (!tc_cell_faces(on, ground, &p->rays, cell, &faces)) continue;
+    if (!tc_cell_faces(on, ground, &p->rays, cell, &faces))
+      continue;
     tc_cell_at(on, ground, p, &faces, 0);
     tc_gather_enter(which, job, &packet->gather, 1, p);
     TcCrossed crossed = {.mask = 1, .z = p->at.z, .s0 = p->at.s, .tilt = p->at.tilt};
-    if (on & TC_CORNERS) crossed.s0 = tc_cell_corner_value(ground, cell, p);
+    if (on & TC_CORNERS)
+      crossed.s0 = tc_cell_corner_value(ground, cell, p);
     p->seen = tc_max(p->at.z, p->rays.begin); /* of each cell for itself: they may overlap */
     p->from[0] = cell;
     tc_cell_at(on, ground, p, &faces, 1);
     crossed.s1 = on & TC_CORNERS ? tc_cell_corner_value(ground, cell, p) : p->at.s;
-    if (on & TC_CORNERS) crossed.range = tc_cell_range(ground, cell);
+    if (on & TC_CORNERS)
+      crossed.range = tc_cell_range(ground, cell);
     const TcMask ends = add_segment(which, on, ground, job, packet, &crossed, worker);
     const TcMask complete = tc_gather_complete(which, on, job, &packet->gather, 1, ++p->steps);
     if (complete) {
@@ -165,18 +181,18 @@ TC_INLINE void advance_cells(const int which, const unsigned on, const TcGround 
 
 typedef void Advance(const TcGround *ground, const TcGatherJob *job, TcWorker *worker, Packet *packet);
 #if TC_LANES == 1
-#define KERNEL(name, gatherer, features)                                                                                      \
-  TC_NOINLINE void walk_##name(const TcGround *ground, const TcGatherJob *job, TcWorker *worker, Packet *packet) {         \
-    advance(TC_GATHER_##gatherer, (features), ground, job, worker, packet);                                                   \
-  }                                                                                                                           \
-  TC_NOINLINE void cells_##name(const TcGround *ground, const TcGatherJob *job, TcWorker *worker, Packet *packet) {   \
-    advance_cells(TC_GATHER_##gatherer, (features), ground, job, worker, packet);                                             \
+#define KERNEL(name, gatherer, features)                                                                               \
+  TC_NOINLINE void walk_##name(const TcGround *ground, const TcGatherJob *job, TcWorker *worker, Packet *packet) {     \
+    advance(TC_GATHER_##gatherer, (features), ground, job, worker, packet);                                            \
+  }                                                                                                                    \
+  TC_NOINLINE void cells_##name(const TcGround *ground, const TcGatherJob *job, TcWorker *worker, Packet *packet) {    \
+    advance_cells(TC_GATHER_##gatherer, (features), ground, job, worker, packet);                                      \
   }
 #define KERNEL_ROW(name, gatherer, features) {walk_##name, cells_##name, TC_GATHER_##gatherer, (features)},
 #else
-#define KERNEL(name, gatherer, features)                                                                              \
-  TC_NOINLINE void walk_##name(const TcGround *ground, const TcGatherJob *job, TcWorker *worker, Packet *packet) { \
-    advance(TC_GATHER_##gatherer, (features), ground, job, worker, packet);                                           \
+#define KERNEL(name, gatherer, features)                                                                               \
+  TC_NOINLINE void walk_##name(const TcGround *ground, const TcGatherJob *job, TcWorker *worker, Packet *packet) {     \
+    advance(TC_GATHER_##gatherer, (features), ground, job, worker, packet);                                            \
   }
 #define KERNEL_ROW(name, gatherer, features) {walk_##name, NULL, TC_GATHER_##gatherer, (features)},
 #endif
@@ -184,13 +200,13 @@ typedef void Advance(const TcGround *ground, const TcGatherJob *job, TcWorker *w
 #define NO_ROW(name, gatherer, features) {NULL, NULL, 0, 0},
 #if TC_SINGLE
 #define KERNEL_DOUBLE NO_KERNEL
-#define KERNEL_ONE NO_KERNEL
+#define KERNEL_ONE    NO_KERNEL
 #elif TC_LANES > 1
 #define KERNEL_DOUBLE KERNEL
-#define KERNEL_ONE NO_KERNEL
+#define KERNEL_ONE    NO_KERNEL
 #else
 #define KERNEL_DOUBLE KERNEL
-#define KERNEL_ONE KERNEL
+#define KERNEL_ONE    KERNEL
 #endif
 #include "render/kernels.def"
 #undef KERNEL
@@ -225,7 +241,7 @@ typedef struct Source {
 
 /* A destination is a pixel, and in single precision the ray of it besides. */
 #define DESTINATION(pixel, sample) ((int64_t)(sample) << 32 | (pixel))
-#define PIXEL_OF(destination) ((destination) & UINT32_MAX)
+#define PIXEL_OF(destination)      ((destination)&UINT32_MAX)
 
 static void begin_packet(const int which, const TcGatherJob *job, TcWaiting *waiting, Packet *packet) {
   TcPacket *p = &packet->walk;
@@ -255,14 +271,17 @@ static void finish_packet(const TcJob *job, State *state, TcWorker *worker, Pack
   double gathered[TC_MAX_SUMS][TC_LANES], nowhere[TC_MAX_SUMS];
   TcPacket *p = &packet->walk;
   const TcEnding ending = {.stopped = p->stopped, .steps = p->steps, .shift = p->shift};
-  tc_gather_end(rows[job->kernel].gatherer, rows[job->kernel].features, &state->job, &packet->gather, &ending, gathered);
-  if (!TC_SINGLE) worker->lost += __builtin_popcount(p->lost);
+  tc_gather_end(rows[job->kernel].gatherer, rows[job->kernel].features, &state->job, &packet->gather, &ending,
+                gathered);
+  if (!TC_SINGLE)
+    worker->lost += __builtin_popcount(p->lost);
   double *to[TC_LANES];
   TC_EACH_LANE {
     bool counts = p->lanes >> l & 1;
 #if TC_SINGLE
     if (counts && (p->lost >> l & 1 || !(gathered[job->sums - 1][l] <= job->tolerance.most))) {
-      state->again[state->again_count++] = (TcSample){.pixel = PIXEL_OF(p->destination[l]), .sample = (int)(p->destination[l] >> 32)};
+      state->again[state->again_count++] =
+          (TcSample){.pixel = PIXEL_OF(p->destination[l]), .sample = (int)(p->destination[l] >> 32)};
       counts = false;
     }
 #endif
@@ -279,24 +298,37 @@ static bool next_packet(const int which, State *state, const Source *source, Pac
   TcQueue *queue = &state->queue;
   if (queue->next == queue->count) {
     queue->next = queue->count = 0;
-    while (queue->count < TC_QUEUE && source->next(source->user, queue)) continue;
-    if (!tc_queue_trace(queue)) return false;
+    while (queue->count < TC_QUEUE && source->next(source->user, queue))
+      continue;
+    if (!tc_queue_trace(queue))
+      return false;
   }
-  if (queue->next < queue->count) begin_packet(which, &state->job, &queue->waiting[queue->next++], packet);
+  if (queue->next < queue->count)
+    begin_packet(which, &state->job, &queue->waiting[queue->next++], packet);
   return true;
 }
 
 /* Packets and those that wait each get lists of hits. */
 static void share_hits(State *state, TcWorker *worker) {
-  for (int i = 0; i < PACKETS; ++i) state->packet[i].walk.hits = worker->hits + i * TC_LANES;
-  for (int i = 0; i < TC_QUEUE; ++i) state->queue.waiting[i].hits = worker->hits + (PACKETS + i) * TC_LANES;
+  for (int i = 0; i < PACKETS; ++i)
+    state->packet[i].walk.hits = worker->hits + i * TC_LANES;
+  for (int i = 0; i < TC_QUEUE; ++i)
+    state->queue.waiting[i].hits = worker->hits + (PACKETS + i) * TC_LANES;
 }
 
 static State *prepare(const TcJob *job, TcWorker *worker) {
   State *state = worker->state;
-  state->ground = (TcGround){.shell = job->shell, .values = job->values, .screen = job->screen, .resolution = job->resolution};
-  state->job = (TcGatherJob){.sums = job->sums, .pieces = job->pieces, .values = job->values, .tolerance = job->tolerance, .sampler = job->sampler,
-                             .coefficients = job->coefficients, .blend = job->blend, .to_the_end = job->to_the_end, .exponent = job->shell->volume->exponent,
+  state->ground =
+      (TcGround){.shell = job->shell, .values = job->values, .screen = job->screen, .resolution = job->resolution};
+  state->job = (TcGatherJob){.sums = job->sums,
+                             .pieces = job->pieces,
+                             .values = job->values,
+                             .tolerance = job->tolerance,
+                             .sampler = job->sampler,
+                             .coefficients = job->coefficients,
+                             .blend = job->blend,
+                             .to_the_end = job->to_the_end,
+                             .exponent = job->shell->volume->exponent,
                              .rounding = 8 * 0x1p-53};
   state->queue.ground = &state->ground;
   state->queue.next = state->queue.count = 0;
@@ -311,7 +343,8 @@ static State *prepare(const TcJob *job, TcWorker *worker) {
     memset(&state->packet[i].gather, 0, sizeof state->packet[i].gather);
 #if !TC_SINGLE
     if (job->coefficients) {
-      double *memory = (double *)(void *)((char *)state + sizeof *state) + (size_t)i * tc_groups_size(job->coefficients);
+      double *memory =
+          (double *)(void *)((char *)state + sizeof *state) + (size_t)i * tc_groups_size(job->coefficients);
       tc_groups_place(job->coefficients, memory, &state->packet[i].gather.groups);
     }
 #endif
@@ -330,25 +363,31 @@ static bool run_packets(const TcJob *job, State *state, TcWorker *worker, const 
     for (int i = 0; i < (cells ? 1 : PACKETS); ++i) {
       Packet *packet = &state->packet[i];
       while (!tc_packet_runs(&packet->walk)) {
-        if (packet->under_way) finish_packet(job, state, worker, packet, source->sums);
-        if (!next_packet(which, state, source, packet)) return false;
-        if (!packet->under_way) break;
+        if (packet->under_way)
+          finish_packet(job, state, worker, packet, source->sums);
+        if (!next_packet(which, state, source, packet))
+          return false;
+        if (!packet->under_way)
+          break;
       }
       any = any || packet->under_way;
     }
-    if (!any) return true;
+    if (!any)
+      return true;
     step(&state->ground, &state->job, worker, state->packet);
   }
 }
 
-/* Places rays. Those that pass the volume are left out, and gather at once what a ray does that meets nothing: of groups, a transmittance of 1. */
+/* Places rays. Those that pass the volume are left out, and gather at once what a ray does that meets nothing: of
+ * groups, a transmittance of 1. */
 static void place_rays(const TcJob *job, const TcGround *ground, double *sums, TcPlaced *placed) {
   unsigned left_out = placed->lanes;
   tc_place(ground, placed);
   left_out &= ~placed->lanes;
   for (; TC_UNLIKELY(job->coefficients != NULL) && left_out; left_out &= left_out - 1) {
     double *of_ray = sums + PIXEL_OF(placed->destination[__builtin_ctz(left_out)]) * job->sums;
-    for (int g = 0; g < job->coefficients->groups; ++g) of_ray[3 * g + 2] += 1;
+    for (int g = 0; g < job->coefficients->groups; ++g)
+      of_ray[3 * g + 2] += 1;
   }
 }
 
@@ -367,7 +406,8 @@ typedef struct Tile {
 } Tile;
 
 /* Places the rays through places of the grid of samples, one in each lane. */
-static void place_samples(const TcJob *job, const TcGround *ground, const TcWide *column, const TcWide *row, double *sums, TcPlaced *placed) {
+static void place_samples(const TcJob *job, const TcGround *ground, const TcWide *column, const TcWide *row,
+                          double *sums, TcPlaced *placed) {
   TcLines *lines = &placed->lines;
   const double samples_x = job->samples_x, samples_y = job->samples_y;
   const TcWide across = *column + 0.5, down = *row + 0.5;
@@ -390,7 +430,8 @@ static void place_next(Tile *tile) {
   const int64_t width = tile->x1 - tile->x0, first = (tile->y - tile->y0) * width + tile->x - tile->x0;
   const int columns = (int)(tile->x1 - tile->x), rows_left = (int)(tile->y1 - tile->y);
   const int sample_x = tile->sample % job->samples_x, sample_y = tile->sample / job->samples_x;
-  const double column = (double)(tile->x * job->samples_x + sample_x), row = (double)(tile->y * job->samples_y + sample_y);
+  const double column = (double)(tile->x * job->samples_x + sample_x),
+               row = (double)(tile->y * job->samples_y + sample_y);
   TcWide x, y;
   unsigned inside = 0;
   TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) {
@@ -404,19 +445,24 @@ static void place_next(Tile *tile) {
   y = y * job->samples_y + row;
   placed->lanes = inside;
   place_samples(job, &tile->state->ground, &x, &y, tile->sums, placed);
-  if (++tile->sample < job->samples_x * job->samples_y) return;
+  if (++tile->sample < job->samples_x * job->samples_y)
+    return;
   tile->sample = 0;
   tile->y += PACKET_Y; /* so that two packets in turn fill a square, or nearly */
-  if (tile->y < tile->y1) return;
+  if (tile->y < tile->y1)
+    return;
   tile->y = tile->y0;
   tile->x += PACKET_X;
 }
 
 static bool next_of_tile(void *user, TcQueue *queue) {
   Tile *tile = user;
-  if (TC_SINGLE && tile->state->again_count > AGAIN - (PACKETS + TC_QUEUE) * TC_LANES) return false; /* these first */
-  while (!tile->placed->lanes && tile->x < tile->x1) place_next(tile);
-  if (!tile->placed->lanes) return false;
+  if (TC_SINGLE && tile->state->again_count > AGAIN - (PACKETS + TC_QUEUE) * TC_LANES)
+    return false; /* these first */
+  while (!tile->placed->lanes && tile->x < tile->x1)
+    place_next(tile);
+  if (!tile->placed->lanes)
+    return false;
   tc_enqueue(tile->placed, queue);
   return true;
 }
@@ -432,7 +478,8 @@ static bool walk_again(const Tile *tile, State *state, TcWorker *worker, double 
   }
   void *const mine = worker->state;
   worker->state = worker->precise_state;
-  const bool ok = state->again_count == 0 || job->precise->samples(job->precise_job, state->again, state->again_count, worker, sums);
+  const bool ok = state->again_count == 0 ||
+                  job->precise->samples(job->precise_job, state->again, state->again_count, worker, sums);
   worker->state = mine;
   worker->again += state->again_count;
   state->again_count = 0;
@@ -440,14 +487,26 @@ static bool walk_again(const Tile *tile, State *state, TcWorker *worker, double 
 }
 #endif
 
-static bool render_tile(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker, double *sums) {
+static bool render_tile(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker,
+                        double *sums) {
   State *state = prepare(job, worker);
-  Tile tile = {.job = job, .state = state, .placed = &state->placed, .x0 = x0, .y0 = y0, .x1 = x1, .y1 = y1, .x = x0, .y = y0, .sums = sums};
+  Tile tile = {.job = job,
+               .state = state,
+               .placed = &state->placed,
+               .x0 = x0,
+               .y0 = y0,
+               .x1 = x1,
+               .y1 = y1,
+               .x = x0,
+               .y = y0,
+               .sums = sums};
   const Source source = {next_of_tile, &tile, sums};
   do {
-    if (!run_packets(job, state, worker, &source)) return false;
+    if (!run_packets(job, state, worker, &source))
+      return false;
 #if TC_SINGLE
-    if (!walk_again(&tile, state, worker, sums)) return false;
+    if (!walk_again(&tile, state, worker, sums))
+      return false;
 #endif
   } while (tile.x < tile.x1);
   return true;
@@ -474,22 +533,26 @@ static void place_some(Samples *some) {
     TC_AT(column, l) = (double)(s->x * job->samples_x + s->sample % job->samples_x);
     TC_AT(row, l) = (double)(s->y * job->samples_y + s->sample / job->samples_x);
     placed->destination[l] = s->pixel;
-    if (some->next++ < some->count) placed->lanes |= 1U << l;
+    if (some->next++ < some->count)
+      placed->lanes |= 1U << l;
   }
   place_samples(job, some->ground, &column, &row, some->sums, placed);
 }
 
 static bool next_of_samples(void *user, TcQueue *queue) {
   Samples *some = user;
-  while (!some->placed->lanes && some->next < some->count) place_some(some);
-  if (!some->placed->lanes) return false;
+  while (!some->placed->lanes && some->next < some->count)
+    place_some(some);
+  if (!some->placed->lanes)
+    return false;
   tc_enqueue(some->placed, queue);
   return true;
 }
 
 static bool render_samples(const TcJob *job, const TcSample *samples, int64_t count, TcWorker *worker, double *sums) {
   State *state = prepare(job, worker);
-  Samples some = {.job = job, .ground = &state->ground, .placed = &state->placed, .samples = samples, .count = count, .sums = sums};
+  Samples some = {
+      .job = job, .ground = &state->ground, .placed = &state->placed, .samples = samples, .count = count, .sums = sums};
   const Source source = {next_of_samples, &some, sums};
   return run_packets(job, state, worker, &source);
 }
@@ -519,22 +582,26 @@ static void place_cast(Cast *cast) {
     TC_AT(lines->begin, l) = line->begin;
     TC_AT(lines->end, l) = line->end;
     placed->destination[l] = cast->next;
-    if (cast->next++ < cast->count) placed->lanes |= 1U << l;
+    if (cast->next++ < cast->count)
+      placed->lanes |= 1U << l;
   }
   place_rays(cast->job, cast->ground, cast->sums, placed);
 }
 
 static bool next_of_cast(void *user, TcQueue *queue) {
   Cast *cast = user;
-  while (!cast->placed->lanes && cast->next < cast->count) place_cast(cast);
-  if (!cast->placed->lanes) return false;
+  while (!cast->placed->lanes && cast->next < cast->count)
+    place_cast(cast);
+  if (!cast->placed->lanes)
+    return false;
   tc_enqueue(cast->placed, queue);
   return true;
 }
 
 static bool cast_lines(const TcJob *job, const TcLine *lines, int64_t count, TcWorker *worker, double *sums) {
   State *state = prepare(job, worker);
-  Cast cast = {.job = job, .ground = &state->ground, .placed = &state->placed, .lines = lines, .count = count, .sums = sums};
+  Cast cast = {
+      .job = job, .ground = &state->ground, .placed = &state->placed, .lines = lines, .count = count, .sums = sums};
   const Source source = {next_of_cast, &cast, sums};
   return run_packets(job, state, worker, &source);
 }
@@ -543,7 +610,8 @@ static bool cast_lines(const TcJob *job, const TcLine *lines, int64_t count, TcW
 
 static void project(const TcJob *job, TcScreen *screen, int64_t begin, int64_t end) {
   for (int64_t i = begin; i < end; i += TC_PROJECTED) {
-    tc_project_some(job->shell->volume, job->values, &job->view, screen, i, end - i < TC_PROJECTED ? (int)(end - i) : TC_PROJECTED);
+    tc_project_some(job->shell->volume, job->values, &job->view, screen, i,
+                    end - i < TC_PROJECTED ? (int)(end - i) : TC_PROJECTED);
   }
 }
 
@@ -557,16 +625,18 @@ static size_t state_size(const TcJob *job) {
 }
 
 #define TABLE_NAME_(name) tc_kernels_##name
-#define TABLE_NAME(name) TABLE_NAME_(name)
+#define TABLE_NAME(name)  TABLE_NAME_(name)
 
 const TcIsaKernels TABLE_NAME(TC_LANES_NAME) = {
-  .name = TC_LANES == 1 ? "scalar" : TC_LANES == (TC_SINGLE ? 8 : 4) ? "avx2" : "avx512",
-  .precision = TC_SINGLE ? "single" : "double",
-  .lanes = TC_LANES,
-  .state_size = state_size,
-  .vertex_size = 4 * sizeof(TcReal),
-  .project = project,
-  .tile = render_tile,
-  .samples = render_samples,
-  .cast = cast_lines,
+    .name = TC_LANES == 1                     ? "scalar"
+            : TC_LANES == (TC_SINGLE ? 8 : 4) ? "avx2"
+                                              : "avx512",
+    .precision = TC_SINGLE ? "single" : "double",
+    .lanes = TC_LANES,
+    .state_size = state_size,
+    .vertex_size = 4 * sizeof(TcReal),
+    .project = project,
+    .tile = render_tile,
+    .samples = render_samples,
+    .cast = cast_lines,
 };

@@ -20,8 +20,8 @@ enum {
 /* The numbers of kernels.def's rows. */
 enum {
 #define KERNEL(name, gatherer, features) TC_KERNEL_##name,
-#define KERNEL_DOUBLE KERNEL
-#define KERNEL_ONE KERNEL
+#define KERNEL_DOUBLE                    KERNEL
+#define KERNEL_ONE                       KERNEL
 #include "render/kernels.def"
 #undef KERNEL
 #undef KERNEL_DOUBLE
@@ -33,16 +33,16 @@ enum {
 typedef struct TcJob {
   int kernel; /* TC_KERNEL_… */
   const TcShell *shell;
-  const TcRows *values;         /* the scalar */
-  const TcPieces *pieces;       /* in the volume's units */
-  const TcScreen *screen;       /* NULL: in ray space */
+  const TcRows *values;   /* the scalar */
+  const TcPieces *pieces; /* in the volume's units */
+  const TcScreen *screen; /* NULL: in ray space */
   TcTolerance tolerance;
-  TcResolution resolution;      /* with TC_BOUND */
-  int sums;                     /* numbers that are gathered for a ray */
+  TcResolution resolution; /* with TC_BOUND */
+  int sums;                /* numbers that are gathered for a ray */
   const struct TcSampler *sampler;
   const TcCoefficients *coefficients;
-  TetcastBlend blend;           /* other than composite: of values, with neither pieces nor coefficients */
-  bool to_the_end;              /* of coefficients: all is wanted, though all groups be opaque */
+  TetcastBlend blend;                 /* other than composite: of values, with neither pieces nor coefficients */
+  bool to_the_end;                    /* of coefficients: all is wanted, though all groups be opaque */
   const struct TcIsaKernels *precise; /* single precision: those in which rays are walked again, */
   const struct TcJob *precise_job;    /* and what for */
 
@@ -55,7 +55,7 @@ typedef struct TcJob {
 /* What a worker keeps to itself. */
 typedef struct TcWorker {
   TcHits hits[TC_HIT_LISTS];
-  void *state; /* of the kernel: as many bytes as it says, aligned to 64, cleared when the worker begins */
+  void *state;         /* of the kernel: as many bytes as it says, aligned to 64, cleared when the worker begins */
   void *precise_state; /* single precision: of the kernel in which rays are walked again */
   int64_t segments, lost, again; /* cells crossed; rays lost; rays walked again */
 } TcWorker;
@@ -76,7 +76,8 @@ typedef struct TcIsaKernels {
   size_t vertex_size;
   void (*project)(const TcJob *job, TcScreen *screen, int64_t begin, int64_t end);
 
-  /* Adds what the rays of the pixels [x0, x1) × [y0, y1) gather to sums[pixel][job->sums], pixels row by row. False: out of memory. */
+  /* Adds what the rays of the pixels [x0, x1) × [y0, y1) gather to sums[pixel][job->sums], pixels row by row. False:
+   * out of memory. */
   bool (*tile)(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker, double *sums);
 
   /* Adds what the rays of samples of a picture gather to sums[sample.pixel][job->sums]. */
@@ -86,6 +87,7 @@ typedef struct TcIsaKernels {
   bool (*cast)(const TcJob *job, const TcLine *lines, int64_t count, TcWorker *worker, double *sums);
 } TcIsaKernels;
 
-extern const TcIsaKernels tc_kernels_one, tc_kernels_avx2, tc_kernels_avx512, tc_kernels_avx2_f32, tc_kernels_avx512_f32;
+extern const TcIsaKernels tc_kernels_one, tc_kernels_avx2, tc_kernels_avx512, tc_kernels_avx2_f32,
+    tc_kernels_avx512_f32;
 
 #endif

@@ -16,13 +16,14 @@ const TcIsaKernels *tc_kernels_for(TetcastIsa most) {
     const TcIsaKernels *kernels;
   } all[] = {
 #ifdef TC_HAVE_X86
-    {TETCAST_ISA_AVX512, &tc_kernels_avx512},
-    {TETCAST_ISA_AVX2, &tc_kernels_avx2},
+      {TETCAST_ISA_AVX512, &tc_kernels_avx512},
+      {TETCAST_ISA_AVX2, &tc_kernels_avx2},
 #endif
-    {TETCAST_ISA_SCALAR, &tc_kernels_one},
+      {TETCAST_ISA_SCALAR, &tc_kernels_one},
   };
   for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
-    if ((most == TETCAST_ISA_AUTO || all[i].isa <= most) && tc_cpu_has(all[i].isa)) return all[i].kernels;
+    if ((most == TETCAST_ISA_AUTO || all[i].isa <= most) && tc_cpu_has(all[i].isa))
+      return all[i].kernels;
   }
   return &tc_kernels_one;
 }
@@ -30,8 +31,10 @@ const TcIsaKernels *tc_kernels_for(TetcastIsa most) {
 const TcIsaKernels *tc_single_kernels_for(TetcastIsa most) {
 #ifdef TC_HAVE_X86
   const TcIsaKernels *kernels = tc_kernels_for(most);
-  if (kernels == &tc_kernels_avx512) return &tc_kernels_avx512_f32;
-  if (kernels == &tc_kernels_avx2) return &tc_kernels_avx2_f32;
+  if (kernels == &tc_kernels_avx512)
+    return &tc_kernels_avx512_f32;
+  if (kernels == &tc_kernels_avx2)
+    return &tc_kernels_avx2_f32;
 #else
   (void)most;
 #endif
@@ -45,8 +48,8 @@ static int choose_row(const char *gatherer, unsigned needed) {
     unsigned features;
   } rows[] = {
 #define KERNEL(name, gatherer, features) {#gatherer, (features)},
-#define KERNEL_DOUBLE KERNEL
-#define KERNEL_ONE KERNEL
+#define KERNEL_DOUBLE                    KERNEL
+#define KERNEL_ONE                       KERNEL
 #include "render/kernels.def"
 #undef KERNEL
 #undef KERNEL_DOUBLE
@@ -104,27 +107,33 @@ void tc_job_of(const TetcastVolume *volume, const TcRows *values, const TcPieces
 
 bool tc_worker_begin(TetcastContext *context, const TcIsaKernels *kernels, const TcJob *job, TcWorker *worker) {
   memset(worker, 0, sizeof *worker);
-  for (int i = 0; i < TC_HIT_LISTS; ++i) worker->hits[i].context = context;
+  for (int i = 0; i < TC_HIT_LISTS; ++i)
+    worker->hits[i].context = context;
   const size_t size = kernels->state_size(job);
   worker->state = tc_allocate(context, 1, size);
-  if (!worker->state) return false;
+  if (!worker->state)
+    return false;
   memset(worker->state, 0, size);
-  if (!job->precise) return true;
+  if (!job->precise)
+    return true;
   const size_t precise_size = job->precise->state_size(job->precise_job);
   worker->precise_state = tc_allocate(context, 1, precise_size);
-  if (worker->precise_state) memset(worker->precise_state, 0, precise_size);
+  if (worker->precise_state)
+    memset(worker->precise_state, 0, precise_size);
   return worker->precise_state != NULL;
 }
 
 void tc_worker_end(TetcastContext *context, TcWorker *worker) {
-  for (int i = 0; i < TC_HIT_LISTS && worker->hits[i].context; ++i) tc_hits_clear(&worker->hits[i]);
+  for (int i = 0; i < TC_HIT_LISTS && worker->hits[i].context; ++i)
+    tc_hits_clear(&worker->hits[i]);
   tc_release(context, worker->state);
   tc_release(context, worker->precise_state);
 }
 
 bool tc_worker_failed(const TcWorker *worker) {
   for (int i = 0; i < TC_HIT_LISTS; ++i) {
-    if (worker->hits[i].out_of_memory) return true;
+    if (worker->hits[i].out_of_memory)
+      return true;
   }
   return false;
 }
@@ -152,21 +161,26 @@ typedef struct Render {
 static bool render_tile(const Render *render, int64_t tile_x, int64_t tile_y, Working *working) {
   const TcJob *job = &render->job;
   const int64_t x0 = tile_x * TC_TILE, y0 = tile_y * TC_TILE;
-  const int64_t x1 = x0 + TC_TILE < job->width ? x0 + TC_TILE : job->width, y1 = y0 + TC_TILE < job->height ? y0 + TC_TILE : job->height;
+  const int64_t x1 = x0 + TC_TILE < job->width ? x0 + TC_TILE : job->width,
+                y1 = y0 + TC_TILE < job->height ? y0 + TC_TILE : job->height;
   const int64_t numbers = (x1 - x0) * (y1 - y0) * job->sums;
   const double samples = job->samples_x * job->samples_y;
   memset(working->sums, 0, (size_t)numbers * sizeof *working->sums);
-  if (!render->kernels->tile(job, x0, y0, x1, y1, &working->worker, working->sums)) return false;
-  for (int64_t i = 0; samples > 1 && i < numbers; ++i) working->sums[i] /= samples;
+  if (!render->kernels->tile(job, x0, y0, x1, y1, &working->worker, working->sums))
+    return false;
+  for (int64_t i = 0; samples > 1 && i < numbers; ++i)
+    working->sums[i] /= samples;
   if (render->plain) {
     const int64_t row = (x1 - x0) * 4 * (int64_t)sizeof(double);
     for (int64_t y = y0; y < y1; ++y) {
-      memcpy((char *)render->frame->pixels + y * render->frame->row_stride + x0 * 4 * (int64_t)sizeof(double), (char *)working->sums + (y - y0) * row,
-             (size_t)row);
+      memcpy((char *)render->frame->pixels + y * render->frame->row_stride + x0 * 4 * (int64_t)sizeof(double),
+             (char *)working->sums + (y - y0) * row, (size_t)row);
     }
     return true;
   }
-  TcGathered gathered = {.sums = working->sums, .bounded = render->bounded, .coefficients = job->coefficients,
+  TcGathered gathered = {.sums = working->sums,
+                         .bounded = render->bounded,
+                         .coefficients = job->coefficients,
                          .exponent = job->shell->volume->exponent};
   if (job->blend) {
     gathered.colors = &render->scene->transfer->pieces;
@@ -175,7 +189,8 @@ static bool render_tile(const Render *render, int64_t tile_x, int64_t tile_y, Wo
   for (int64_t y = y0; y < y1; ++y) {
     for (int64_t x = x0; x < x1; ++x, gathered.sums += job->sums) {
       const double bound = tc_frame_store(render->frame, x, y, &gathered);
-      if (!(bound <= working->error)) working->error = bound;
+      if (!(bound <= working->error))
+        working->error = bound;
     }
   }
   return true;
@@ -184,7 +199,8 @@ static bool render_tile(const Render *render, int64_t tile_x, int64_t tile_y, Wo
 /* Every other bit of i, put together: the place along one axis of the i-th square of Morton's curve. */
 static int64_t even_bits(int64_t i) {
   int64_t result = 0;
-  for (int bit = 0; i >> 2 * bit; ++bit) result |= (i >> 2 * bit & 1) << bit;
+  for (int bit = 0; i >> 2 * bit; ++bit)
+    result |= (i >> 2 * bit & 1) << bit;
   return result;
 }
 
@@ -193,8 +209,10 @@ static bool render_tiles(void *data, int64_t begin, int64_t end, int worker) {
   Render *render = data;
   for (int64_t i = begin; i < end; ++i) {
     const int64_t x = even_bits(i), y = even_bits(i >> 1);
-    if (x >= render->tiles_x || y >= render->tiles_y) continue;
-    if (!render_tile(render, x, y, &render->workers[worker])) return false;
+    if (x >= render->tiles_x || y >= render->tiles_y)
+      continue;
+    if (!render_tile(render, x, y, &render->workers[worker]))
+      return false;
   }
   return true;
 }
@@ -203,7 +221,8 @@ static bool render_tiles(void *data, int64_t begin, int64_t end, int worker) {
 static void sample_grid(int samples, int *x, int *y) {
   *y = 1;
   for (int i = 2; i * i <= samples; ++i) {
-    if (samples % i == 0) *y = i;
+    if (samples % i == 0)
+      *y = i;
   }
   *x = samples / *y;
 }
@@ -223,23 +242,25 @@ static bool project_some(void *data, int64_t begin, int64_t end, int worker) {
   return true;
 }
 
-/* To project a vertex takes about as long as a dozen steps of a ray save by it: small pictures of large meshes, and those of which little is seen, are not
- * worth it. Most rays cross some of the cells along one edge of a cube of as many. */
+/* To project a vertex takes about as long as a dozen steps of a ray save by it: small pictures of large meshes, and
+ * those of which little is seen, are not worth it. Most rays cross some of the cells along one edge of a cube of as
+ * many. */
 static bool worth_projecting(const TetcastScene *scene, int64_t rays, const TcJob *job) {
   const double cells = (double)scene->volume->cell_count, crossings = 0.5 * (double)rays * cbrt(cells);
-  const double share = job->shell->visible ? (double)job->shell->visible_count / (double)scene->volume->clusters.count : 1;
+  const double share =
+      job->shell->visible ? (double)job->shell->visible_count / (double)scene->volume->clusters.count : 1;
   return share * crossings > 3 * (double)scene->volume->vertex_count;
 }
 
-/* Projects vertices; `screen` is part of the job then. Where there is no memory for it, that is told: rays in space would
- * do without, but what they see is rounded otherwise, and no bit of a picture depends on how much memory there was. */
+/* Projects vertices; `screen` is part of the job then. Where there is no memory for it, that is told: rays in space
+ * would do without, but what they see is rounded otherwise, and no bit of a picture depends on how much memory there
+ * was. */
 static TetcastStatus project(const TetcastScene *scene, const TcIsaKernels *kernels, const TcScreen *setup, TcJob *job,
                              TcScreen *screen) {
   const bool single = kernels->vertex_size < 4 * sizeof(double);
   const int64_t count = scene->volume->vertex_count;
   void *vertices = tc_scene_swap_vertices(scene, single, NULL);
-  if (!vertices &&
-      !tc_allocate_array(scene->context, &vertices, count, kernels->vertex_size, "vertices on the screen"))
+  if (!vertices && !tc_allocate_array(scene->context, &vertices, count, kernels->vertex_size, "vertices on the screen"))
     return TETCAST_ERROR_MEMORY;
   *screen = *setup;
   screen->vertices = vertices;
@@ -250,20 +271,24 @@ static TetcastStatus project(const TetcastScene *scene, const TcIsaKernels *kern
 }
 
 static void keep_vertices(const TetcastScene *scene, const TcJob *job, bool single) {
-  if (job->screen) tc_release(scene->context, tc_scene_swap_vertices(scene, single, job->screen->vertices));
+  if (job->screen)
+    tc_release(scene->context, tc_scene_swap_vertices(scene, single, job->screen->vertices));
 }
 
 /* ── all of it ── */
 
 /* Single precision, where a bound on what it costs leaves enough of the tolerance. Holes of the field have borders at
  * which what is seen jumps, which the bound leaves out. */
-static bool allow_single(const TetcastScene *scene, const TetcastRenderDesc *desc, const TcScreen *setup, Render *render) {
+static bool allow_single(const TetcastScene *scene, const TetcastRenderDesc *desc, const TcScreen *setup,
+                         Render *render) {
   const TcIsaKernels *kernels = tc_single_kernels_for(desc->isa);
   TcJob *job = &render->job;
   double values;
   if (!kernels || !(desc->tolerance > 0) || job->values->association != TETCAST_POINT || job->values->has_holes)
     return false;
-  if (!tc_tolerance_single(job->pieces, desc->tolerance, scene->values->largest, 2 * scene->volume->radius, &job->tolerance, &values)) return false;
+  if (!tc_tolerance_single(job->pieces, desc->tolerance, scene->values->largest, 2 * scene->volume->radius,
+                           &job->tolerance, &values))
+    return false;
   render->precise = *job;
   render->precise.tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);
   job->precise = render->kernels;
@@ -280,13 +305,16 @@ static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *de
   const bool on_screen = scene->volume->traversal == TETCAST_TRAVERSAL_SHELL && worth_projecting(scene, rays, job) &&
                          tc_screen_setup(scene->volume, &job->view, job->width, job->height, &setup);
   double away2 = 0;
-  for (int k = 0; k < 3; ++k) away2 += (scene->volume->center[k] - job->view.eye[k]) * (scene->volume->center[k] - job->view.eye[k]);
+  for (int k = 0; k < 3; ++k)
+    away2 += (scene->volume->center[k] - job->view.eye[k]) * (scene->volume->center[k] - job->view.eye[k]);
   const double largest = scene->values ? scene->values->largest : 0;
   const TcResolution in_ray_space = tc_ray_resolution(scene->volume, sqrt(away2), largest);
-  job->resolution = on_screen ? tc_screen_resolution(scene->volume, &setup, false, job->width, job->height, largest)
-                              : in_ray_space;
-  if (job->pieces) job->tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);
-  if (!on_screen) return TETCAST_OK;
+  job->resolution =
+      on_screen ? tc_screen_resolution(scene->volume, &setup, false, job->width, job->height, largest) : in_ray_space;
+  if (job->pieces)
+    job->tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);
+  if (!on_screen)
+    return TETCAST_OK;
   if (measured && job->pieces && allow_single(scene, desc, &setup, render)) {
     render->precise.resolution = in_ray_space; /* where rays are walked again, which are few */
   }
@@ -297,7 +325,8 @@ static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *de
 static TetcastStatus run(Render *render, const TetcastProgress *progress, TetcastRenderStats *stats) {
   TetcastContext *context = render->scene->context;
   const int threads = tc_context_threads(context);
-  if (!tc_allocate_array(context, (void **)&render->workers, threads, sizeof *render->workers, "workers")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&render->workers, threads, sizeof *render->workers, "workers"))
+    return TETCAST_ERROR_MEMORY;
   bool ok = true;
   for (int i = 0; i < threads; ++i) {
     Working *w = &render->workers[i];
@@ -309,15 +338,18 @@ static TetcastStatus run(Render *render, const TetcastProgress *progress, Tetcas
   render->tiles_x = (render->job.width + TC_TILE - 1) / TC_TILE;
   render->tiles_y = (render->job.height + TC_TILE - 1) / TC_TILE;
   int64_t side = 1;
-  while (side < render->tiles_x || side < render->tiles_y) side *= 2;
+  while (side < render->tiles_x || side < render->tiles_y)
+    side *= 2;
   TetcastStatus status = ok ? tc_parallel_for(context, side * side, 1, render_tiles, render, progress)
                             : tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: workers");
   for (int i = 0; i < threads; ++i) {
     Working *w = &render->workers[i];
     stats->segments += w->worker.segments;
     stats->lost += w->worker.lost;
-    if (!(w->error <= stats->error)) stats->error = w->error;
-    if (tc_worker_failed(&w->worker)) status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: hits of a ray");
+    if (!(w->error <= stats->error))
+      stats->error = w->error;
+    if (tc_worker_failed(&w->worker))
+      status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: hits of a ray");
     tc_worker_end(context, &w->worker);
     tc_release(context, w->sums);
   }
@@ -329,30 +361,41 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
                               TetcastFrame *frame, TetcastRenderStats *stats) {
   TetcastContext *context = scene->context;
   const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
-  const bool measured = exact && !scene->blend && (desc->tolerance > 0 || tc_frame_channel(frame, TETCAST_CHANNEL_ERROR));
+  const bool measured =
+      exact && !scene->blend && (desc->tolerance > 0 || tc_frame_channel(frame, TETCAST_CHANNEL_ERROR));
   Render render = {.scene = scene, .frame = frame};
   TcJob *job = &render.job;
   job->width = frame->width;
   job->height = frame->height;
   sample_grid(desc->samples, &job->samples_x, &job->samples_y);
-  TetcastStatus status = tc_view_create(context, camera, scene->volume, (double)frame->width / (double)frame->height, &job->view);
-  if (!status && !scene->coefficients && !scene->blend) status = tc_scene_prepare(scene);
+  TetcastStatus status =
+      tc_view_create(context, camera, scene->volume, (double)frame->width / (double)frame->height, &job->view);
+  if (!status && !scene->coefficients && !scene->blend)
+    status = tc_scene_prepare(scene);
   TcSampler *sampler = NULL;
-  if (!status && !exact) status = tc_sampler_create(context, desc->integrator, desc->integrator_n, &sampler);
-  if (status) return status;
+  if (!status && !exact)
+    status = tc_sampler_create(context, desc->integrator, desc->integrator_n, &sampler);
+  if (status)
+    return status;
   job->sampler = sampler;
-  job->to_the_end = tc_frame_channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH) || tc_frame_channel(frame, TETCAST_CHANNEL_PATH_LENGTH);
+  job->to_the_end =
+      tc_frame_channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH) || tc_frame_channel(frame, TETCAST_CHANNEL_PATH_LENGTH);
   tc_job_of_scene(scene, measured, job);
   const bool one_by_one = sampler || scene->volume->traversal == TETCAST_TRAVERSAL_FACES;
   render.bounded = measured;
   render.plain = job->pieces && frame->type == TETCAST_TYPE_FLOAT64 && !measured;
   render.kernels = tc_kernels_for(one_by_one ? TETCAST_ISA_SCALAR : desc->isa);
   status = plan(scene, desc, measured, &render); /* which may take those in single precision */
-  TetcastRenderStats sum = {.rays = frame->width * frame->height * desc->samples, .isa = render.kernels->name, .precision = render.kernels->precision};
-  if (!status) status = run(&render, &desc->progress, &sum);
+  TetcastRenderStats sum = {.rays = frame->width * frame->height * desc->samples,
+                            .isa = render.kernels->name,
+                            .precision = render.kernels->precision};
+  if (!status)
+    status = run(&render, &desc->progress, &sum);
   keep_vertices(scene, job, job->precise != NULL);
   tc_sampler_destroy(sampler);
-  if (!measured) sum.error = NAN;
-  if (!status && stats) *stats = sum;
+  if (!measured)
+    sum.error = NAN;
+  if (!status && stats)
+    *stats = sum;
   return status;
 }

@@ -21,16 +21,20 @@ struct TetcastFrame {
   void *channel[TC_CHANNELS]; /* in the order of tc_channels; NULL: not asked for */
 };
 
-static inline int tc_frame_depth(const TetcastFrame *frame, int channel) { return tc_channels[channel].info.of_groups ? frame->groups : 1; }
+static inline int tc_frame_depth(const TetcastFrame *frame, int channel) {
+  return tc_channels[channel].info.of_groups ? frame->groups : 1;
+}
 
 static inline void *tc_frame_channel(const TetcastFrame *frame, TetcastChannel channel) {
   for (int i = 0; i < TC_CHANNELS; ++i) {
-    if (tc_channels[i].info.channel == channel) return frame->channel[i];
+    if (tc_channels[i].info.channel == channel)
+      return frame->channel[i];
   }
   return NULL;
 }
 
-/* What follows from a scene's field and transfer function, made by the first frame that needs it, and memory that is kept from frame to frame. */
+/* What follows from a scene's field and transfer function, made by the first frame that needs it, and memory that is
+ * kept from frame to frame. */
 typedef struct TcPrepared {
   pthread_mutex_t mutex;
   bool ready;
@@ -49,15 +53,16 @@ struct TetcastScene {
   TcPrepared *prepared;
 };
 
-TetcastStatus tc_view_create(TetcastContext *context, const TetcastCamera *camera, const TetcastVolume *volume, double aspect,
-                             TcView *view);
+TetcastStatus tc_view_create(TetcastContext *context, const TetcastCamera *camera, const TetcastVolume *volume,
+                             double aspect, TcView *view);
 TetcastCamera tc_camera_default(const double bounds[6], double aspect);
 
 TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *desc, TetcastFrame **frame);
 void tc_frame_destroy(TetcastFrame *frame);
 /* Colours pixels by their values in a channel that the frame has. */
 void tc_frame_recolor(TetcastFrame *frame, const TcPieces *colors);
-/* Stores a pixel and its values of all channels. Returns a bound on its error, rounding to the frame's type included; NaN: not known. */
+/* Stores a pixel and its values of all channels. Returns a bound on its error, rounding to the frame's type included;
+ * NaN: not known. */
 double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, TcGathered *gathered);
 
 TetcastStatus tc_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **scene);
@@ -74,14 +79,18 @@ void *tc_scene_swap_vertices(const TetcastScene *scene, bool single, void *verti
 TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
                               TetcastFrame *frame, TetcastRenderStats *stats);
 
-/* Colour map `name` over [low, high] with an extinction that makes a good first picture of the scene's volume and field. */
-TetcastStatus tc_scene_preset(const TetcastScene *scene, const char *name, double low, double high, TetcastTransferFunction **transfer);
+/* Colour map `name` over [low, high] with an extinction that makes a good first picture of the scene's volume and
+ * field. */
+TetcastStatus tc_scene_preset(const TetcastScene *scene, const char *name, double low, double high,
+                              TetcastTransferFunction **transfer);
 
-/* What a kernel needs of the scene besides rays: the shell, the field, the transfer function, coefficients or blend mode; `bound`: the error is wanted. */
+/* What a kernel needs of the scene besides rays: the shell, the field, the transfer function, coefficients or blend
+ * mode; `bound`: the error is wanted. */
 void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job);
 /* The same of a volume, all of it, with a transfer function in its units. */
 void tc_job_of(const TetcastVolume *volume, const TcRows *values, const TcPieces *pieces, TcJob *job);
-/* The kernels of the widest vectors that this processor has and that are allowed; those in single precision, NULL if there are none. */
+/* The kernels of the widest vectors that this processor has and that are allowed; those in single precision, NULL if
+ * there are none. */
 const TcIsaKernels *tc_kernels_for(TetcastIsa most);
 const TcIsaKernels *tc_single_kernels_for(TetcastIsa most);
 /* Memory and counters of a worker; false: out of memory. */

@@ -6,7 +6,8 @@
 TetcastStatus tc_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **out) {
   TetcastScene *scene;
   TcPrepared *prepared;
-  if (!tc_allocate_array(context, (void **)&scene, 1, sizeof *scene, "scene")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&scene, 1, sizeof *scene, "scene"))
+    return TETCAST_ERROR_MEMORY;
   if (!tc_allocate_array(context, (void **)&prepared, 1, sizeof *prepared, "scene")) {
     tc_release(context, scene);
     return TETCAST_ERROR_MEMORY;
@@ -25,16 +26,18 @@ static void forget(TcPrepared *prepared) {
   prepared->ready = false;
 }
 
-/* Calls for one scene may come at the same time: one of them does the work. None is under way that uses what is replaced, as neither
- * field nor transfer function change while the scene renders. */
+/* Calls for one scene may come at the same time: one of them does the work. None is under way that uses what is
+ * replaced, as neither field nor transfer function change while the scene renders. */
 TetcastStatus tc_scene_prepare(const TetcastScene *scene) {
   TcPrepared *prepared = scene->prepared;
   TetcastStatus status = TETCAST_OK;
   pthread_mutex_lock(&prepared->mutex);
   if (!prepared->ready) {
     forget(prepared);
-    status = tc_transfer_rescale(scene->context, scene->transfer, scene->values->exponent, scene->volume->exponent, &prepared->scaled);
-    if (!status) status = tc_shell_build(scene->values, &prepared->scaled->pieces, &prepared->shell);
+    status = tc_transfer_rescale(scene->context, scene->transfer, scene->values->exponent, scene->volume->exponent,
+                                 &prepared->scaled);
+    if (!status)
+      status = tc_shell_build(scene->values, &prepared->scaled->pieces, &prepared->shell);
     prepared->ready = !status;
   }
   pthread_mutex_unlock(&prepared->mutex);
@@ -51,9 +54,11 @@ void *tc_scene_swap_vertices(const TetcastScene *scene, bool single, void *verti
 }
 
 void tc_scene_destroy(TetcastScene *scene) {
-  if (!scene) return;
+  if (!scene)
+    return;
   forget(scene->prepared);
-  for (int i = 0; i < 2; ++i) tc_release(scene->context, scene->prepared->vertices[i]);
+  for (int i = 0; i < 2; ++i)
+    tc_release(scene->context, scene->prepared->vertices[i]);
   pthread_mutex_destroy(&scene->prepared->mutex);
   tc_release(scene->context, scene->prepared);
   tc_rows_release(scene->values);
@@ -71,7 +76,8 @@ static void bind(TetcastScene *scene, TcRows *rows) {
 TetcastStatus tc_scene_set_field(TetcastScene *scene, const TetcastField *field) {
   TcRows *rows;
   const TetcastStatus status = tc_rows_of_scalar(scene->volume, field, &rows);
-  if (!status) bind(scene, rows);
+  if (!status)
+    bind(scene, rows);
   return status;
 }
 
@@ -92,13 +98,15 @@ static void replace(TetcastScene *scene, TetcastTransferFunction *transfer, TcCo
 TetcastStatus tc_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer) {
   TetcastTransferFunction *copy;
   const TetcastStatus status = tc_transfer_copy(scene->context, transfer, &copy);
-  if (!status) replace(scene, copy, NULL);
+  if (!status)
+    replace(scene, copy, NULL);
   return status;
 }
 
 TetcastStatus tc_scene_set_coefficients(TetcastScene *scene, const TetcastCoefficientsDesc *desc) {
   TcCoefficients *copy;
   const TetcastStatus status = tc_coefficients_create(scene->volume, desc, &copy);
-  if (!status) replace(scene, NULL, copy);
+  if (!status)
+    replace(scene, NULL, copy);
   return status;
 }

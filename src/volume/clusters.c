@@ -19,7 +19,8 @@ typedef struct Build {
 static uint64_t neighbors_of(const TcAdjacency *adjacency, int64_t c, int i) {
   const uint32_t *neighbor = adjacency->cells[(c << TC_CLUSTER_BITS) + i].neighbor;
   uint64_t bits = 0;
-  for (int k = 0; k < 4; ++k) bits |= (uint64_t)(neighbor[k] >> TC_CLUSTER_BITS == (uint64_t)c) << (neighbor[k] & (TC_CLUSTER - 1));
+  for (int k = 0; k < 4; ++k)
+    bits |= (uint64_t)(neighbor[k] >> TC_CLUSTER_BITS == (uint64_t)c) << (neighbor[k] & (TC_CLUSTER - 1));
   return bits;
 }
 
@@ -57,7 +58,8 @@ static bool take_seeds(void *data, int64_t begin, int64_t end, int worker) {
     for (uint64_t bits = build->found[c]; bits; bits &= bits - 1, ++seed) {
       const int place = __builtin_ctzll(bits);
       build->clusters->places[seed] = (uint8_t)place;
-      memcpy(build->clusters->seeds[seed], build->vertices[(c << TC_CLUSTER_BITS) + place], sizeof *build->clusters->seeds);
+      memcpy(build->clusters->seeds[seed], build->vertices[(c << TC_CLUSTER_BITS) + place],
+             sizeof *build->clusters->seeds);
     }
   }
   return true;
@@ -66,13 +68,15 @@ static bool take_seeds(void *data, int64_t begin, int64_t end, int worker) {
 static TetcastStatus build_clusters(Build *build) {
   TcClusters *clusters = build->clusters;
   TetcastContext *context = clusters->context;
-  if (!tc_allocate_array(context, (void **)&clusters->begin, clusters->count + 1, sizeof *clusters->begin, "clusters") ||
+  if (!tc_allocate_array(context, (void **)&clusters->begin, clusters->count + 1, sizeof *clusters->begin,
+                         "clusters") ||
       !tc_allocate_array(context, (void **)&build->found, clusters->count, sizeof *build->found, "clusters")) {
     return TETCAST_ERROR_MEMORY;
   }
   clusters->begin[0] = 0;
   tc_parallel_for(context, clusters->count, GRAIN, find_seeds, build, NULL);
-  for (int64_t c = 0; c < clusters->count; ++c) clusters->begin[c + 1] += clusters->begin[c];
+  for (int64_t c = 0; c < clusters->count; ++c)
+    clusters->begin[c + 1] += clusters->begin[c];
   const int64_t seeds = clusters->begin[clusters->count];
   if (!tc_allocate_array(context, (void **)&clusters->seeds, seeds, sizeof *clusters->seeds, "clusters") ||
       !tc_allocate_array(context, (void **)&clusters->places, seeds, sizeof *clusters->places, "clusters")) {
@@ -88,12 +92,14 @@ TetcastStatus tc_clusters_build(TetcastContext *context, const TcAdjacency *adja
   Build build = {.adjacency = adjacency, .vertices = vertices, .clusters = clusters};
   const TetcastStatus status = build_clusters(&build);
   tc_release(context, build.found);
-  if (status) tc_clusters_clear(clusters);
+  if (status)
+    tc_clusters_clear(clusters);
   return status;
 }
 
 void tc_clusters_clear(TcClusters *clusters) {
-  if (!clusters->context) return;
+  if (!clusters->context)
+    return;
   tc_release(clusters->context, clusters->begin);
   tc_release(clusters->context, clusters->seeds);
   tc_release(clusters->context, clusters->places);
@@ -101,16 +107,19 @@ void tc_clusters_clear(TcClusters *clusters) {
 }
 
 size_t tc_clusters_bytes(const TcClusters *clusters) {
-  if (!clusters->seeds) return 0;
+  if (!clusters->seeds)
+    return 0;
   const size_t count = (size_t)clusters->count;
   return (count + 1) * sizeof *clusters->begin + clusters->begin[count] * (sizeof *clusters->seeds + 1);
 }
 
-/* The neighbour across the face opposite vertex k of a cell: three of its vertices are the same, the last goes where it belongs. */
+/* The neighbour across the face opposite vertex k of a cell: three of its vertices are the same, the last goes where it
+ * belongs. */
 static void vertices_across(const uint32_t v[4], int k, uint32_t vertex_xor, uint32_t across[4]) {
   static const unsigned char others[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
   uint32_t last = vertex_xor;
-  for (int j = 0; j < 3; ++j) last ^= v[others[k][j]];
+  for (int j = 0; j < 3; ++j)
+    last ^= v[others[k][j]];
   for (int j = 0; j < 3; ++j) {
     const uint32_t shared = v[others[k][j]], less = last < shared ? last : shared;
     last = last < shared ? shared : last;
@@ -119,7 +128,8 @@ static void vertices_across(const uint32_t v[4], int k, uint32_t vertex_xor, uin
   across[3] = last;
 }
 
-int tc_cluster_cells(const TcClusters *clusters, const TcAdjacency *adjacency, int64_t c, uint32_t vertices[TC_CLUSTER][4]) {
+int tc_cluster_cells(const TcClusters *clusters, const TcAdjacency *adjacency, int64_t c,
+                     uint32_t vertices[TC_CLUSTER][4]) {
   const TcCell *cells = adjacency->cells + (c << TC_CLUSTER_BITS);
   uint64_t open = 0;
   for (uint32_t i = clusters->begin[c]; i < clusters->begin[c + 1]; ++i) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Clusters: 64 cells that lie next to each other in memory and, as cells are ordered, in space. By a cluster's range of values (rows.h) a transfer
- * function tells whether anything of it can be seen. */
+/* Clusters: 64 cells that lie next to each other in memory and, as cells are ordered, in space. By a cluster's range of
+ * values (rows.h) a transfer function tells whether anything of it can be seen. */
 #ifndef TC_VOLUME_CLUSTERS_H
 #define TC_VOLUME_CLUSTERS_H
 
@@ -8,8 +8,8 @@
 
 enum { TC_CLUSTER_BITS = 6, TC_CLUSTER = 1 << TC_CLUSTER_BITS };
 
-/* Of a few cells the vertices are kept: from these "seeds" follow those of the cells of their cluster that faces connect them with.
- * About 0.7 bytes per cell. */
+/* Of a few cells the vertices are kept: from these "seeds" follow those of the cells of their cluster that faces
+ * connect them with. About 0.7 bytes per cell. */
 typedef struct TcClusters {
   TetcastContext *context;
   int64_t count;
@@ -31,6 +31,7 @@ void tc_clusters_clear(TcClusters *clusters);
 size_t tc_clusters_bytes(const TcClusters *clusters);
 
 /* Number of cells of cluster c, and the vertices of each, ascending. */
-int tc_cluster_cells(const TcClusters *clusters, const TcAdjacency *adjacency, int64_t c, uint32_t vertices[TC_CLUSTER][4]);
+int tc_cluster_cells(const TcClusters *clusters, const TcAdjacency *adjacency, int64_t c,
+                     uint32_t vertices[TC_CLUSTER][4]);
 
 #endif

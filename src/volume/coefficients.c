@@ -14,35 +14,46 @@ typedef struct List {
   int count;
 } List;
 
-static const char *place_name(const TetcastField *field) { return field->association == TETCAST_POINT ? "vertex" : "tetrahedron"; }
+static const char *place_name(const TetcastField *field) {
+  return field->association == TETCAST_POINT ? "vertex" : "tetrahedron";
+}
 
 static TetcastStatus check_field(const TetcastVolume *volume, const List *list, int i, bool extinction) {
   const TetcastField *field = list->fields[i];
-  if (field->association == TETCAST_CORNER) return tc_error(volume->context, TETCAST_ERROR_ARGUMENT, "%s: a field of corners can't be one", list->name);
+  if (field->association == TETCAST_CORNER)
+    return tc_error(volume->context, TETCAST_ERROR_ARGUMENT, "%s: a field of corners can't be one", list->name);
   const int64_t wanted = field->association == TETCAST_POINT ? volume->vertex_count : volume->mesh_cell_count;
   if (field->values.count != wanted) {
-    return tc_error(volume->context, TETCAST_ERROR_ARGUMENT, "%s has %" PRId64 " values, the mesh %" PRId64 " %s", list->name,
-                    field->values.count, wanted, field->association == TETCAST_POINT ? "vertices" : "tetrahedra");
+    return tc_error(volume->context, TETCAST_ERROR_ARGUMENT, "%s has %" PRId64 " values, the mesh %" PRId64 " %s",
+                    list->name, field->values.count, wanted,
+                    field->association == TETCAST_POINT ? "vertices" : "tetrahedra");
   }
   if (tc_field_jumps(volume, field)) {
-    return tc_error(volume->context, TETCAST_ERROR_ARGUMENT, "%s: points of different cells at one place have different values, which only a transfer function can show",
-                    list->name);
+    return tc_error(
+        volume->context, TETCAST_ERROR_ARGUMENT,
+        "%s: points of different cells at one place have different values, which only a transfer function can show",
+        list->name);
   }
   double range[2] = {0, 0};
-  if (extinction) tc_field_range(field, range, NULL);
-  if (!(range[0] < 0)) return TETCAST_OK;
+  if (extinction)
+    tc_field_range(field, range, NULL);
+  if (!(range[0] < 0))
+    return TETCAST_OK;
   int64_t at = 0;
-  while (!(tc_field_at(field, at) < 0)) ++at;
+  while (!(tc_field_at(field, at) < 0))
+    ++at;
   char group[32] = "";
-  if (list->count > 1) snprintf(group, sizeof group, " of group %d", i);
-  return tc_error(volume->context, TETCAST_ERROR_DATA, "%s: a negative extinction%s, %g at %s %" PRId64, list->name, group,
-                  tc_field_at(field, at), place_name(field), at);
+  if (list->count > 1)
+    snprintf(group, sizeof group, " of group %d", i);
+  return tc_error(volume->context, TETCAST_ERROR_DATA, "%s: a negative extinction%s, %g at %s %" PRId64, list->name,
+                  group, tc_field_at(field, at), place_name(field), at);
 }
 
 static TetcastStatus check_list(const TetcastVolume *volume, const List *list, bool extinction) {
   for (int i = 0; i < list->count; ++i) {
     const TetcastStatus status = check_field(volume, list, i, extinction);
-    if (status) return status;
+    if (status)
+      return status;
   }
   return TETCAST_OK;
 }
@@ -58,18 +69,20 @@ static int emission_exponent(const List *emission) {
     largest = fmax(largest, fmax(fabs(range[0]), fabs(range[1])));
   }
   int exponent = 0;
-  if (largest > 0) frexp(largest, &exponent);
+  if (largest > 0)
+    frexp(largest, &exponent);
   return exponent < -1000 ? -1000 : exponent; /* whose inverse power is a number */
 }
 
 /* The fields of one association, those of extinction first, and where each went. */
-static TetcastStatus bind_association(const TetcastVolume *volume, const List lists[2], TetcastAssociation association, int first_slot,
-                                      int *const slots[2], TcRows **rows) {
+static TetcastStatus bind_association(const TetcastVolume *volume, const List lists[2], TetcastAssociation association,
+                                      int first_slot, int *const slots[2], TcRows **rows) {
   const TetcastField *fields[2 * TETCAST_MAX_GROUPS];
   int width = 0;
   for (int l = 0; l < 2; ++l) {
     for (int i = 0; i < lists[l].count; ++i) {
-      if (lists[l].fields[i]->association != association) continue;
+      if (lists[l].fields[i]->association != association)
+        continue;
       slots[l][i] = first_slot + width;
       fields[width++] = lists[l].fields[i];
     }
@@ -78,24 +91,32 @@ static TetcastStatus bind_association(const TetcastVolume *volume, const List li
 }
 
 static TetcastStatus bind_all(const TetcastVolume *volume, const List lists[2], TcCoefficients *c) {
-  if (!tc_allocate_array(c->context, (void **)&c->slots, 2 * (int64_t)c->groups, sizeof *c->slots, "coefficients")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(c->context, (void **)&c->slots, 2 * (int64_t)c->groups, sizeof *c->slots, "coefficients"))
+    return TETCAST_ERROR_MEMORY;
   int *const slots[2] = {c->slots, c->slots + c->groups};
   TetcastStatus status = bind_association(volume, lists, TETCAST_POINT, 0, slots, &c->points);
-  if (!status) status = bind_association(volume, lists, TETCAST_CELL, c->points ? c->points->width : 0, slots, &c->cells);
+  if (!status)
+    status = bind_association(volume, lists, TETCAST_CELL, c->points ? c->points->width : 0, slots, &c->cells);
   for (int l = 0; !status && l < 2; ++l) {
-    for (int g = lists[l].count; g < c->groups; ++g) slots[l][g] = lists[l].count ? slots[l][0] : -1;
+    for (int g = lists[l].count; g < c->groups; ++g)
+      slots[l][g] = lists[l].count ? slots[l][0] : -1;
   }
   return status;
 }
 
-TetcastStatus tc_coefficients_create(const TetcastVolume *volume, const TetcastCoefficientsDesc *desc, TcCoefficients **out) {
-  const List lists[2] = {{desc->extinction_name ? desc->extinction_name : "extinction", desc->extinction, desc->extinction_count},
-                         {desc->emission_name ? desc->emission_name : "emission", desc->emission, desc->emission_count}};
+TetcastStatus tc_coefficients_create(const TetcastVolume *volume, const TetcastCoefficientsDesc *desc,
+                                     TcCoefficients **out) {
+  const List lists[2] = {
+      {desc->extinction_name ? desc->extinction_name : "extinction", desc->extinction, desc->extinction_count},
+      {desc->emission_name ? desc->emission_name : "emission", desc->emission, desc->emission_count}};
   TetcastStatus status = check_list(volume, &lists[0], true);
-  if (!status) status = check_list(volume, &lists[1], false);
-  if (status) return status;
+  if (!status)
+    status = check_list(volume, &lists[1], false);
+  if (status)
+    return status;
   TcCoefficients *c;
-  if (!tc_allocate_array(volume->context, (void **)&c, 1, sizeof *c, "coefficients")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(volume->context, (void **)&c, 1, sizeof *c, "coefficients"))
+    return TETCAST_ERROR_MEMORY;
   const int half = volume->exponent / 2, brightest = emission_exponent(&lists[1]);
   *c = (TcCoefficients){.context = volume->context,
                         .scale = {ldexp(1, half), ldexp(1, volume->exponent - half)},
@@ -115,7 +136,8 @@ TetcastStatus tc_coefficients_create(const TetcastVolume *volume, const TetcastC
 }
 
 void tc_coefficients_destroy(TcCoefficients *c) {
-  if (!c) return;
+  if (!c)
+    return;
   tc_rows_release(c->points);
   tc_rows_release(c->cells);
   tc_release(c->context, c->slots);

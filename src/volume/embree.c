@@ -19,12 +19,12 @@
 #include <tetcast/version.h>
 
 /* Embree sees the sphere as the unit sphere. There, a line's start and direction rounded to float are off by at most
- * 2^−24 each per coordinate; over a length of at most 4 + 4 that moves it by less than 2^−20. A box's own rounding adds 2^−24 and
- * Embree's slab test, with RTC_SCENE_FLAG_ROBUST, a few 2^−24 of lengths ≤ 8. */
+ * 2^−24 each per coordinate; over a length of at most 4 + 4 that moves it by less than 2^−20. A box's own rounding adds
+ * 2^−24 and Embree's slab test, with RTC_SCENE_FLAG_ROBUST, a few 2^−24 of lengths ≤ 8. */
 #define MARGIN 0x1p-18
 
-/* What the caller counts goes to Embree in pairs: neighbours in number are neighbours in space. It halves the time and the memory that
- * building takes; queries find somewhat more that is not met, 2 to 4 % of a frame. */
+/* What the caller counts goes to Embree in pairs: neighbours in number are neighbours in space. It halves the time and
+ * the memory that building takes; queries find somewhat more that is not met, 2 to 4 % of a frame. */
 enum { PAIR = 2 };
 
 /* From so many of the caller's primitives on, several threads build. */
@@ -55,7 +55,7 @@ typedef struct Query {
 
 const char *tetcast_embree_version_string(void) {
 #define STRING_(x) #x
-#define STRING(x) STRING_(x)
+#define STRING(x)  STRING_(x)
   return STRING(RTC_VERSION_MAJOR) "." STRING(RTC_VERSION_MINOR) "." STRING(RTC_VERSION_PATCH);
 }
 
@@ -91,15 +91,18 @@ static void intersect_function(const struct RTCIntersectFunctionNArguments *argu
   const Query *query = (const Query *)(const void *)arguments->context;
   const uint32_t begin = PAIR * arguments->primID, end = end_of(arguments->geometryUserPtr, arguments->primID);
   if (query->candidate) {
-    for (uint32_t i = begin; i < end && arguments->valid[0]; ++i) query->candidate(query->query, i);
+    for (uint32_t i = begin; i < end && arguments->valid[0]; ++i)
+      query->candidate(query->query, i);
     return;
   }
-  /* A ray's id is its lane's bit, however many of a packet Embree hands on together; `valid` is 0 or −1. It is the eleventh of a packet's
-   * arrays: what RTCRayN_id() says, which is there in C++ only. */
+  /* A ray's id is its lane's bit, however many of a packet Embree hands on together; `valid` is 0 or −1. It is the
+   * eleventh of a packet's arrays: what RTCRayN_id() says, which is there in C++ only. */
   const unsigned *id = (const unsigned *)(const void *)arguments->rayhit + 10 * arguments->N;
   unsigned lanes = 0;
-  for (unsigned i = 0; i < arguments->N; ++i) lanes |= (unsigned)arguments->valid[i] & id[i];
-  for (uint32_t i = begin; i < end; ++i) query->packet_candidate(query->query, i, lanes);
+  for (unsigned i = 0; i < arguments->N; ++i)
+    lanes |= (unsigned)arguments->valid[i] & id[i];
+  for (uint32_t i = begin; i < end; ++i)
+    query->packet_candidate(query->query, i, lanes);
 }
 
 static bool memory_monitor(void *user, ssize_t bytes, bool post) {
@@ -118,7 +121,8 @@ static enum RTCError take_error(RTCDevice device) {
 }
 
 static TetcastStatus report(TetcastContext *context, enum RTCError error) {
-  if (error == RTC_ERROR_NONE) return TETCAST_OK;
+  if (error == RTC_ERROR_NONE)
+    return TETCAST_OK;
   if (error == RTC_ERROR_OUT_OF_MEMORY)
     return tc_error(context, TETCAST_ERROR_MEMORY, "out of memory in Embree");
   return tc_error(context, TETCAST_ERROR_EMBREE, "Embree reports error %d", (int)error);
@@ -199,7 +203,8 @@ static TetcastStatus make(TcEmbree *embree) {
 TetcastStatus tc_embree_create(TetcastContext *context, int64_t count, const double center[3], double radius,
                                TcBoundsFunction *bounds, const void *user, TcEmbree **out) {
   TcEmbree *embree;
-  if (!tc_allocate_array(context, (void **)&embree, 1, sizeof *embree, "Embree")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&embree, 1, sizeof *embree, "Embree"))
+    return TETCAST_ERROR_MEMORY;
   memset(embree, 0, sizeof *embree);
   embree->context = context;
   memcpy(embree->center, center, sizeof embree->center);
@@ -219,7 +224,8 @@ TetcastStatus tc_embree_create(TetcastContext *context, int64_t count, const dou
 }
 
 void tc_embree_destroy(TcEmbree *embree) {
-  if (!embree) return;
+  if (!embree)
+    return;
   if (embree->scene)
     rtcReleaseScene(embree->scene);
   if (embree->device)
@@ -239,63 +245,72 @@ static void start_of(const TcEmbree *embree, const double from_center[3], const 
     p[k] = from_center[k] * embree->inverse_radius;
     along += p[k] * direction[k];
   }
-  for (int k = 0; k < 3; ++k) start[k] = (float)(p[k] - (along + 2) * direction[k]);
+  for (int k = 0; k < 3; ++k)
+    start[k] = (float)(p[k] - (along + 2) * direction[k]);
 }
 
 /* Sets up `query`, and calls an rtcIntersect function with what comes before and after the rays. */
 #if RTC_VERSION_MAJOR >= 4
-#define INTERSECT(query, is_coherent, call)                                                               \
-  do {                                                                                                 \
-    rtcInitRayQueryContext(&(query).context);                                                          \
-    struct RTCIntersectArguments arguments;                                                            \
-    rtcInitIntersectArguments(&arguments);                                                             \
-    arguments.flags = (is_coherent) ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;     \
-    arguments.context = &(query).context;                                                              \
-    call;                                                                                              \
+#define INTERSECT(query, is_coherent, call)                                                                            \
+  do {                                                                                                                 \
+    rtcInitRayQueryContext(&(query).context);                                                                          \
+    struct RTCIntersectArguments arguments;                                                                            \
+    rtcInitIntersectArguments(&arguments);                                                                             \
+    arguments.flags = (is_coherent) ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;                     \
+    arguments.context = &(query).context;                                                                              \
+    call;                                                                                                              \
   } while (0)
 #define RAYS(query, rays) (rays), &arguments
 #else
-#define INTERSECT(query, is_coherent, call)                                                                                   \
-  do {                                                                                                                     \
-    rtcInitIntersectContext(&(query).context);                                                                             \
-    (query).context.flags = (is_coherent) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT; \
-    call;                                                                                                                  \
+#define INTERSECT(query, is_coherent, call)                                                                            \
+  do {                                                                                                                 \
+    rtcInitIntersectContext(&(query).context);                                                                         \
+    (query).context.flags =                                                                                            \
+        (is_coherent) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;                   \
+    call;                                                                                                              \
   } while (0)
 #define RAYS(query, rays) &(query).context, (rays)
 #endif
 
-void tc_embree_query(const TcEmbree *embree, const double from_center[3], const double direction[3], TcCandidateFunction *candidate,
-                     void *user) {
+void tc_embree_query(const TcEmbree *embree, const double from_center[3], const double direction[3],
+                     TcCandidateFunction *candidate, void *user) {
   float start[3];
   start_of(embree, from_center, direction, start);
-  struct RTCRayHit ray = {
-    .ray = {.org_x = start[0], .org_y = start[1], .org_z = start[2], .dir_x = (float)direction[0], .dir_y = (float)direction[1],
-            .dir_z = (float)direction[2], .tfar = 4, .mask = UINT32_MAX},
-    .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .primID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}}};
+  struct RTCRayHit ray = {.ray = {.org_x = start[0],
+                                  .org_y = start[1],
+                                  .org_z = start[2],
+                                  .dir_x = (float)direction[0],
+                                  .dir_y = (float)direction[1],
+                                  .dir_z = (float)direction[2],
+                                  .tfar = 4,
+                                  .mask = UINT32_MAX},
+                          .hit = {.geomID = RTC_INVALID_GEOMETRY_ID,
+                                  .primID = RTC_INVALID_GEOMETRY_ID,
+                                  .instID = {RTC_INVALID_GEOMETRY_ID}}};
   Query query = {.candidate = candidate, .query = user};
   INTERSECT(query, false, rtcIntersect1(embree->scene, RAYS(query, &ray)));
 }
 
 /* Sets up rays of a packet of either width. */
-#define FILL(rays)                                                                                                   \
-  do {                                                                                                               \
-    for (int i = 0; i < width; ++i) {                                                                                \
-      const double p[3] = {from_center[i], from_center[width + i], from_center[2 * width + i]};                      \
-      const double d[3] = {direction[i], direction[width + i], direction[2 * width + i]};                            \
-      float start[3];                                                                                                \
-      start_of(embree, p, d, start);                                                                                 \
-      (rays).ray.org_x[i] = start[0], (rays).ray.org_y[i] = start[1], (rays).ray.org_z[i] = start[2];                \
-      (rays).ray.dir_x[i] = (float)d[0], (rays).ray.dir_y[i] = (float)d[1], (rays).ray.dir_z[i] = (float)d[2];       \
-      (rays).ray.tnear[i] = 0, (rays).ray.tfar[i] = 4, (rays).ray.time[i] = 0;                                       \
-      (rays).ray.mask[i] = UINT32_MAX, (rays).ray.id[i] = 1U << i,     (rays).ray.flags[i] = 0;                      \
-      (rays).hit.geomID[i] = (rays).hit.primID[i] = (rays).hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;               \
-      valid[i] = lanes >> i & 1 ? -1 : 0;                                                                            \
-    }                                                                                                                \
+#define FILL(rays)                                                                                                     \
+  do {                                                                                                                 \
+    for (int i = 0; i < width; ++i) {                                                                                  \
+      const double p[3] = {from_center[i], from_center[width + i], from_center[2 * width + i]};                        \
+      const double d[3] = {direction[i], direction[width + i], direction[2 * width + i]};                              \
+      float start[3];                                                                                                  \
+      start_of(embree, p, d, start);                                                                                   \
+      (rays).ray.org_x[i] = start[0], (rays).ray.org_y[i] = start[1], (rays).ray.org_z[i] = start[2];                  \
+      (rays).ray.dir_x[i] = (float)d[0], (rays).ray.dir_y[i] = (float)d[1], (rays).ray.dir_z[i] = (float)d[2];         \
+      (rays).ray.tnear[i] = 0, (rays).ray.tfar[i] = 4, (rays).ray.time[i] = 0;                                         \
+      (rays).ray.mask[i] = UINT32_MAX, (rays).ray.id[i] = 1U << i, (rays).ray.flags[i] = 0;                            \
+      (rays).hit.geomID[i] = (rays).hit.primID[i] = (rays).hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;                 \
+      valid[i] = lanes >> i & 1 ? -1 : 0;                                                                              \
+    }                                                                                                                  \
   } while (0)
 
 /* Where the processor has no such packets, Embree takes them apart. */
-void tc_embree_query_packet(const TcEmbree *embree, int width, unsigned lanes, const double *from_center, const double *direction,
-                            TcPacketCandidateFunction *candidate, void *user) {
+void tc_embree_query_packet(const TcEmbree *embree, int width, unsigned lanes, const double *from_center,
+                            const double *direction, TcPacketCandidateFunction *candidate, void *user) {
   Query query = {.packet_candidate = candidate, .query = user};
   _Alignas(64) int valid[16];
   if (width == 16) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Embree as a finder of candidates: everything whose box a line may meet. Embree works in single precision and its boxes are
- * widened to make up for that; whether a line really crosses is decided by the caller, in double precision. */
+/* Embree as a finder of candidates: everything whose box a line may meet. Embree works in single precision and its
+ * boxes are widened to make up for that; whether a line really crosses is decided by the caller, in double precision.
+ */
 #ifndef TC_VOLUME_EMBREE_H
 #define TC_VOLUME_EMBREE_H
 
@@ -20,13 +21,13 @@ void tc_embree_destroy(TcEmbree *embree);
 size_t tc_embree_bytes(const TcEmbree *embree);
 
 /* All candidates along the whole line through the centre + `from_center`, with unit `direction`. */
-void tc_embree_query(const TcEmbree *embree, const double from_center[3], const double direction[3], TcCandidateFunction *candidate,
-                     void *query);
+void tc_embree_query(const TcEmbree *embree, const double from_center[3], const double direction[3],
+                     TcCandidateFunction *candidate, void *query);
 
-/* The same for `width` (8 or 16) lines at once, those of the bits of `lanes`: the components of from_center and direction are
- * [3][width]. Called for every primitive that any may meet, with the bits of those. */
+/* The same for `width` (8 or 16) lines at once, those of the bits of `lanes`: the components of from_center and
+ * direction are [3][width]. Called for every primitive that any may meet, with the bits of those. */
 typedef void TcPacketCandidateFunction(void *query, uint32_t i, unsigned lanes);
-void tc_embree_query_packet(const TcEmbree *embree, int width, unsigned lanes, const double *from_center, const double *direction,
-                            TcPacketCandidateFunction *candidate, void *query);
+void tc_embree_query_packet(const TcEmbree *embree, int width, unsigned lanes, const double *from_center,
+                            const double *direction, TcPacketCandidateFunction *candidate, void *query);
 
 #endif

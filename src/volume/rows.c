@@ -25,12 +25,17 @@ static void destroy(TcRows *rows) {
 }
 
 /* From here on others may find them. */
-static void share(TcRows *rows, int64_t serial) { tc_shared_add(rows->volume->shared, &rows->entry, rows, serial, bytes_of(rows)); }
+static void share(TcRows *rows, int64_t serial) {
+  tc_shared_add(rows->volume->shared, &rows->entry, rows, serial, bytes_of(rows));
+}
 
-void tc_rows_retain(TcRows *rows) { tc_shared_retain(rows->volume->shared, &rows->entry); }
+void tc_rows_retain(TcRows *rows) {
+  tc_shared_retain(rows->volume->shared, &rows->entry);
+}
 
 void tc_rows_release(TcRows *rows) {
-  if (rows && tc_shared_release(rows->volume->shared, &rows->entry)) destroy(rows);
+  if (rows && tc_shared_release(rows->volume->shared, &rows->entry))
+    destroy(rows);
 }
 
 /* ── taking values ── */
@@ -40,13 +45,14 @@ typedef struct Take {
   const TetcastField *const *fields; /* [width] */
   TetcastAssociation association;    /* of the rows */
   TcTask *fill;
-  const uint32_t *source;            /* [count]: where the mesh has them */
+  const uint32_t *source; /* [count]: where the mesh has them */
   double scale;
   bool clamp;
 } Take;
 
 static double kept(const Take *take, double value) {
-  if (!isfinite(value)) return (double)NAN;
+  if (!isfinite(value))
+    return (double)NAN;
   return take->clamp ? fmax(-TC_LARGEST_VALUE, fmin(value, TC_LARGEST_VALUE)) : value * take->scale;
 }
 
@@ -57,9 +63,12 @@ static bool take_corner_rows(void *data, int64_t begin, int64_t end, int worker)
   const uint8_t *order = take->rows->volume->corner_order;
   for (int64_t i = begin; i < end; ++i) {
     for (int k = 0; k < 4; ++k) {
-      const double value = kept(take, tc_field_at(take->fields[0], 4 * (int64_t)take->source[i] + (order[i] >> 2 * k & 3)));
-      if (take->rows->is_double) ((double *)take->rows->data)[4 * i + k] = value;
-      else ((float *)take->rows->data)[4 * i + k] = (float)value;
+      const double value =
+          kept(take, tc_field_at(take->fields[0], 4 * (int64_t)take->source[i] + (order[i] >> 2 * k & 3)));
+      if (take->rows->is_double)
+        ((double *)take->rows->data)[4 * i + k] = value;
+      else
+        ((float *)take->rows->data)[4 * i + k] = (float)value;
     }
   }
   return true;
@@ -72,8 +81,10 @@ static bool take_vertex_corner_rows(void *data, int64_t begin, int64_t end, int 
   for (int64_t i = begin; i < end; ++i) {
     for (int k = 0; k < 4; ++k) {
       const double value = kept(take, tc_field_at(take->fields[0], take->rows->volume->corner_vertices[i][k]));
-      if (take->rows->is_double) ((double *)take->rows->data)[4 * i + k] = value;
-      else ((float *)take->rows->data)[4 * i + k] = (float)value;
+      if (take->rows->is_double)
+        ((double *)take->rows->data)[4 * i + k] = value;
+      else
+        ((float *)take->rows->data)[4 * i + k] = (float)value;
     }
   }
   return true;
@@ -82,7 +93,8 @@ static bool take_vertex_corner_rows(void *data, int64_t begin, int64_t end, int 
 bool tc_field_jumps(const TetcastVolume *volume, const TetcastField *field) {
   for (int64_t i = 0; i < volume->weld_count && field->association == TETCAST_POINT; ++i) {
     const double a = tc_field_at(field, volume->welds[i].vertex), b = tc_field_at(field, volume->welds[i].with);
-    if (a != b && (isfinite(a) || isfinite(b))) return true;
+    if (a != b && (isfinite(a) || isfinite(b)))
+      return true;
   }
   return false;
 }
@@ -93,11 +105,14 @@ static bool take_rows(void *data, int64_t begin, int64_t end, int worker) {
   const int width = take->rows->width;
   const TetcastArray *first = &take->fields[0]->values;
   for (int64_t i = begin; i < end; ++i) {
-    if (i + AHEAD < end) __builtin_prefetch((const char *)first->data + take->source[i + AHEAD] * first->stride);
+    if (i + AHEAD < end)
+      __builtin_prefetch((const char *)first->data + take->source[i + AHEAD] * first->stride);
     for (int k = 0; k < width; ++k) {
       const double value = kept(take, tc_field_at(take->fields[k], take->source[i]));
-      if (take->rows->is_double) ((double *)take->rows->data)[i * width + k] = value;
-      else ((float *)take->rows->data)[i * width + k] = (float)value;
+      if (take->rows->is_double)
+        ((double *)take->rows->data)[i * width + k] = value;
+      else
+        ((float *)take->rows->data)[i * width + k] = (float)value;
     }
   }
   return true;
@@ -107,11 +122,16 @@ static bool take_rows(void *data, int64_t begin, int64_t end, int worker) {
 static TetcastStatus create(const TetcastVolume *volume, Take *take, int width, TcRows **out) {
   TetcastContext *context = volume->context;
   TcRows *rows;
-  if (!tc_allocate_array(context, (void **)&rows, 1, sizeof *rows, "field")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&rows, 1, sizeof *rows, "field"))
+    return TETCAST_ERROR_MEMORY;
   const bool point = take->association == TETCAST_POINT;
-  *rows = (TcRows){.volume = volume, .association = take->association, .width = width, .count = point ? volume->vertex_count : volume->cell_count};
+  *rows = (TcRows){.volume = volume,
+                   .association = take->association,
+                   .width = width,
+                   .count = point ? volume->vertex_count : volume->cell_count};
   const int fields = take->association == TETCAST_CORNER ? 1 : width;
-  for (int k = 0; k < fields; ++k) rows->is_double |= take->fields[k]->values.type != TETCAST_TYPE_FLOAT32;
+  for (int k = 0; k < fields; ++k)
+    rows->is_double |= take->fields[k]->values.type != TETCAST_TYPE_FLOAT32;
   const size_t size = (size_t)width * (rows->is_double ? sizeof(double) : sizeof(float));
   /* Room for one row more, for lanes that rest, and for a vector that reaches beyond the last. */
   if (!tc_allocate_array(context, &rows->data, rows->count + 1 + 128 / (int64_t)size, size, "values of a field")) {
@@ -126,18 +146,22 @@ static TetcastStatus create(const TetcastVolume *volume, Take *take, int width, 
   return TETCAST_OK;
 }
 
-TetcastStatus tc_rows_of_fields(const TetcastVolume *volume, const TetcastField *const *fields, int width, TcRows **rows) {
+TetcastStatus tc_rows_of_fields(const TetcastVolume *volume, const TetcastField *const *fields, int width,
+                                TcRows **rows) {
   Take take = {.fields = fields, .association = fields[0]->association, .fill = take_rows, .scale = 1, .clamp = true};
   const TetcastStatus status = create(volume, &take, width, rows);
-  if (!status) share(*rows, 0);
+  if (!status)
+    share(*rows, 0);
   return status;
 }
 
 /* ── ranges of clusters ── */
 
 static void extend(double range[2], double value) { /* NaN does nothing */
-  if (value < range[0]) range[0] = value;
-  if (value > range[1]) range[1] = value;
+  if (value < range[0])
+    range[0] = value;
+  if (value > range[1])
+    range[1] = value;
 }
 
 static bool take_ranges(void *data, int64_t begin, int64_t end, int worker) {
@@ -147,13 +171,16 @@ static bool take_ranges(void *data, int64_t begin, int64_t end, int worker) {
   for (int64_t c = begin; c < end; ++c) {
     double range[2] = {INFINITY, -INFINITY};
     if (rows->association != TETCAST_POINT) {
-      const int64_t first = (c << TC_CLUSTER_BITS) * rows->width, count = tc_cluster_size(&volume->adjacency, c) * rows->width;
-      for (int64_t i = 0; i < count; ++i) extend(range, tc_rows_number(rows, first + i));
+      const int64_t first = (c << TC_CLUSTER_BITS) * rows->width,
+                    count = tc_cluster_size(&volume->adjacency, c) * rows->width;
+      for (int64_t i = 0; i < count; ++i)
+        extend(range, tc_rows_number(rows, first + i));
     } else {
       uint32_t vertices[TC_CLUSTER][4];
       const int count = tc_cluster_cells(&volume->clusters, &volume->adjacency, c, vertices);
       for (int i = 0; i < count; ++i) {
-        for (int k = 0; k < 4; ++k) extend(range, tc_rows_value(rows, vertices[i][k], 0));
+        for (int k = 0; k < 4; ++k)
+          extend(range, tc_rows_value(rows, vertices[i][k], 0));
       }
     }
     /* One float further out: conversion rounds to nearest. */
@@ -167,20 +194,24 @@ static TetcastStatus check_scalar(const TetcastVolume *volume, const TetcastFiel
   const bool point = field->association == TETCAST_POINT, corner = field->association == TETCAST_CORNER;
   const int64_t wanted = point ? volume->vertex_count : volume->mesh_cell_count, each = corner ? 4 : 1;
   if (field->values.count != each * wanted) {
-    return tc_error(volume->context, TETCAST_ERROR_ARGUMENT, "the field has %" PRId64 " values, the mesh %" PRId64 " %s%s",
-                    field->values.count, wanted, point ? "vertices" : "tetrahedra", corner ? " of four corners" : "");
+    return tc_error(volume->context, TETCAST_ERROR_ARGUMENT,
+                    "the field has %" PRId64 " values, the mesh %" PRId64 " %s%s", field->values.count, wanted,
+                    point ? "vertices" : "tetrahedra", corner ? " of four corners" : "");
   }
   if (corner && !volume->corner_order) {
-    return tc_error(volume->context, TETCAST_ERROR_ARGUMENT, "a field of corners needs a volume made for it: TetcastVolumeDesc.corners");
+    return tc_error(volume->context, TETCAST_ERROR_ARGUMENT,
+                    "a field of corners needs a volume made for it: TetcastVolumeDesc.corners");
   }
   return TETCAST_OK;
 }
 
 TetcastStatus tc_rows_of_scalar(const TetcastVolume *volume, const TetcastField *field, TcRows **out) {
   const TetcastStatus checked = check_scalar(volume, field);
-  if (checked) return checked;
+  if (checked)
+    return checked;
   const int64_t serial = field->memory ? field->serial : 0; /* a borrowed array may have changed */
-  if (serial && (*out = tc_shared_find(volume->shared, serial))) return TETCAST_OK;
+  if (serial && (*out = tc_shared_find(volume->shared, serial)))
+    return TETCAST_OK;
   double range[2];
   int64_t nonfinite;
   tc_field_range(field, range, &nonfinite);
@@ -188,19 +219,22 @@ TetcastStatus tc_rows_of_scalar(const TetcastVolume *volume, const TetcastField 
   const bool tiny = largest > 0 && largest < ldexp(1, -TC_TINY_FIELD);
   const int exponent = tiny ? -TC_TINY_FIELD : largest > TC_LARGEST_SCALAR ? TC_HUGE_FIELD : 0;
   Take take = {.fields = &field, .association = field->association, .fill = take_rows, .scale = ldexp(1, -exponent)};
-  if (field->association == TETCAST_CORNER) take.fill = take_corner_rows;
+  if (field->association == TETCAST_CORNER)
+    take.fill = take_corner_rows;
   if (tc_field_jumps(volume, field)) {
     take.association = TETCAST_CORNER;
     take.fill = take_vertex_corner_rows;
   }
   TcRows *rows;
   const TetcastStatus status = create(volume, &take, take.association == TETCAST_CORNER ? 4 : 1, &rows);
-  if (status) return status;
+  if (status)
+    return status;
   rows->exponent = exponent;
   rows->largest = largest * take.scale;
   rows->has_holes = nonfinite > 0;
   const int64_t clusters = volume->clusters.seeds ? volume->clusters.count : 0;
-  if (clusters > 0 && !tc_allocate_array(volume->context, (void **)&rows->range, clusters, sizeof *rows->range, "ranges of a field")) {
+  if (clusters > 0 &&
+      !tc_allocate_array(volume->context, (void **)&rows->range, clusters, sizeof *rows->range, "ranges of a field")) {
     destroy(rows);
     return TETCAST_ERROR_MEMORY;
   }

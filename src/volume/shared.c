@@ -11,7 +11,8 @@ struct TcShared {
 
 TetcastStatus tc_shared_create(TetcastContext *context, TcShared **out) {
   TcShared *shared;
-  if (!tc_allocate_array(context, (void **)&shared, 1, sizeof *shared, "volume")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&shared, 1, sizeof *shared, "volume"))
+    return TETCAST_ERROR_MEMORY;
   *shared = (TcShared){.context = context};
   pthread_mutex_init(&shared->mutex, NULL); /* which can't fail with default attributes */
   *out = shared;
@@ -19,7 +20,8 @@ TetcastStatus tc_shared_create(TetcastContext *context, TcShared **out) {
 }
 
 void tc_shared_destroy(TcShared *shared) {
-  if (!shared) return;
+  if (!shared)
+    return;
   pthread_mutex_destroy(&shared->mutex);
   tc_release(shared->context, shared);
 }
@@ -27,7 +29,8 @@ void tc_shared_destroy(TcShared *shared) {
 size_t tc_shared_bytes(TcShared *shared) {
   size_t bytes = sizeof *shared;
   pthread_mutex_lock(&shared->mutex);
-  for (const TcSharedEntry *entry = shared->first; entry; entry = entry->next) bytes += entry->bytes;
+  for (const TcSharedEntry *entry = shared->first; entry; entry = entry->next)
+    bytes += entry->bytes;
   pthread_mutex_unlock(&shared->mutex);
   return bytes;
 }
@@ -42,8 +45,10 @@ void tc_shared_add(TcShared *shared, TcSharedEntry *entry, void *thing, int64_t 
 void *tc_shared_find(TcShared *shared, int64_t serial) {
   pthread_mutex_lock(&shared->mutex);
   TcSharedEntry *entry = shared->first;
-  while (entry && entry->serial != serial) entry = entry->next;
-  if (entry) ++entry->users;
+  while (entry && entry->serial != serial)
+    entry = entry->next;
+  if (entry)
+    ++entry->users;
   pthread_mutex_unlock(&shared->mutex);
   return entry ? entry->thing : NULL;
 }
@@ -58,8 +63,10 @@ bool tc_shared_release(TcShared *shared, TcSharedEntry *entry) {
   pthread_mutex_lock(&shared->mutex);
   const bool unused = --entry->users == 0;
   TcSharedEntry **at = &shared->first;
-  while (unused && *at != entry) at = &(*at)->next;
-  if (unused) *at = entry->next;
+  while (unused && *at != entry)
+    at = &(*at)->next;
+  if (unused)
+    *at = entry->next;
   pthread_mutex_unlock(&shared->mutex);
   return unused;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What scenes of a volume have in common and use now: things that were made once, each with the number of its users. All functions may be called from
- * several threads at a time. */
+/* What scenes of a volume have in common and use now: things that were made once, each with the number of its users.
+ * All functions may be called from several threads at a time. */
 #ifndef TC_VOLUME_SHARED_H
 #define TC_VOLUME_SHARED_H
 

@@ -17,12 +17,14 @@ typedef struct Build {
 /* Whether any scalar in [low, high] has an extinction. */
 static bool is_visible(const TcPieces *pieces, double low, double high) {
   for (int64_t i = tc_piece_below(pieces, low); i <= pieces->count && pieces->pieces[i].low <= high; ++i) {
-    if (pieces->pieces[i].at_low.extinction > 0 || pieces->pieces[i].at_high.extinction > 0) return true;
+    if (pieces->pieces[i].at_low.extinction > 0 || pieces->pieces[i].at_high.extinction > 0)
+      return true;
   }
   return false;
 }
 
-/* The faces of cluster c's cells behind which nothing can be seen. Their number; written to `faces` unless it is NULL. */
+/* The faces of cluster c's cells behind which nothing can be seen. Their number; written to `faces` unless it is NULL.
+ */
 static uint32_t cluster_faces(const Build *build, int64_t c, TcShellFace *faces) {
   const TcAdjacency *adjacency = &build->volume->adjacency;
   uint32_t vertices[TC_CLUSTER][4], count = 0;
@@ -33,13 +35,16 @@ static uint32_t cluster_faces(const Build *build, int64_t c, TcShellFace *faces)
     const TcCell *cell = &adjacency->cells[first + i];
     for (int k = 0; k < 4; ++k) {
       const uint32_t next = cell->neighbor[k];
-      if (!(next & TC_SHELL) && build->visible[next >> TC_CLUSTER_BITS]) continue;
+      if (!(next & TC_SHELL) && build->visible[next >> TC_CLUSTER_BITS])
+        continue;
       if (faces) {
-        if (!known) tc_cluster_cells(&build->volume->clusters, adjacency, c, vertices);
+        if (!known)
+          tc_cluster_cells(&build->volume->clusters, adjacency, c, vertices);
         known = true;
         TcShellFace *face = &faces[count];
         for (int j = 0, n = 0; j < 4; ++j) {
-          if (j != k) face->vertex[n++] = vertices[i][j];
+          if (j != k)
+            face->vertex[n++] = vertices[i][j];
         }
         face->cell = (uint32_t)(first + i);
       }
@@ -52,7 +57,8 @@ static uint32_t cluster_faces(const Build *build, int64_t c, TcShellFace *faces)
 static bool count_faces(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   const Build *build = data;
-  for (int64_t c = begin; c < end; ++c) build->begin[c + 1] = build->visible[c] ? cluster_faces(build, c, NULL) : 0;
+  for (int64_t c = begin; c < end; ++c)
+    build->begin[c + 1] = build->visible[c] ? cluster_faces(build, c, NULL) : 0;
   return true;
 }
 
@@ -60,7 +66,8 @@ static bool take_faces(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   const Build *build = data;
   for (int64_t c = begin; c < end; ++c) {
-    if (build->visible[c]) cluster_faces(build, c, build->faces + build->begin[c]);
+    if (build->visible[c])
+      cluster_faces(build, c, build->faces + build->begin[c]);
   }
   return true;
 }
@@ -68,7 +75,8 @@ static bool take_faces(void *data, int64_t begin, int64_t end, int worker) {
 static TetcastStatus make_faces(Build *build, TcShell *shell) {
   TetcastContext *context = build->volume->context;
   const int64_t clusters = build->volume->clusters.count;
-  if (!tc_allocate_array(context, (void **)&build->begin, clusters + 1, sizeof *build->begin, "visible faces")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&build->begin, clusters + 1, sizeof *build->begin, "visible faces"))
+    return TETCAST_ERROR_MEMORY;
   build->begin[0] = 0;
   tc_parallel_for(context, clusters, GRAIN, count_faces, build, NULL);
   int64_t total = 0;
@@ -77,8 +85,10 @@ static TetcastStatus make_faces(Build *build, TcShell *shell) {
     build->begin[c + 1] += build->begin[c];
   }
   shell->count = total;
-  if (total >= INT64_C(1) << 31) return TETCAST_ERROR_LIMIT; /* the volume's own will do */
-  if (!tc_allocate_array(context, &shell->memory, total, sizeof *shell->faces, "visible faces")) return TETCAST_ERROR_MEMORY;
+  if (total >= INT64_C(1) << 31)
+    return TETCAST_ERROR_LIMIT; /* the volume's own will do */
+  if (!tc_allocate_array(context, &shell->memory, total, sizeof *shell->faces, "visible faces"))
+    return TETCAST_ERROR_MEMORY;
   shell->faces = build->faces = shell->memory;
   tc_parallel_for(context, clusters, GRAIN, take_faces, build, NULL);
   return TETCAST_OK;
@@ -88,10 +98,12 @@ TetcastStatus tc_shell_build(const TcRows *rows, const TcPieces *pieces, TcShell
   const TetcastVolume *volume = rows->volume;
   *shell = volume->shell;
   const TcClusters *clusters = &volume->clusters;
-  if (!rows->range) return TETCAST_OK;
+  if (!rows->range)
+    return TETCAST_OK;
   TetcastContext *context = volume->context;
   uint8_t *visible;
-  if (!tc_allocate_array(context, (void **)&visible, clusters->count, 1, "visible clusters")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&visible, clusters->count, 1, "visible clusters"))
+    return TETCAST_ERROR_MEMORY;
   int64_t count = 0;
   for (int64_t c = 0; c < clusters->count; ++c) {
     const float *range = rows->range[c];
@@ -113,9 +125,11 @@ TetcastStatus tc_shell_build(const TcRows *rows, const TcPieces *pieces, TcShell
     return TETCAST_OK;
   }
   if (!status && shell->count > 0) {
-    status = tc_embree_create(context, shell->count, volume->center, volume->radius, tc_shell_bounds, shell, &shell->embree);
+    status =
+        tc_embree_create(context, shell->count, volume->center, volume->radius, tc_shell_bounds, shell, &shell->embree);
   }
-  if (status) tc_shell_clear(shell);
+  if (status)
+    tc_shell_clear(shell);
   return status;
 }
 

@@ -10,12 +10,15 @@
 #include "mesh/order.h"
 #include "mesh/stage.h"
 
-/* Resident: 25 bytes per cell (20, its source, and its share of a cluster), 16 or 28 per vertex (the position and its source), 16 per shell face and
- * what Embree takes; a field of scenes, 4 or 8 per vertex. While preparing, 48 per cell and 4 per vertex more at most (adjacency.c); Embree begins when that is given back. */
+/* Resident: 25 bytes per cell (20, its source, and its share of a cluster), 16 or 28 per vertex (the position and its
+ * source), 16 per shell face and what Embree takes; a field of scenes, 4 or 8 per vertex. While preparing, 48 per cell
+ * and 4 per vertex more at most (adjacency.c); Embree begins when that is given back. */
 
 enum { GRAIN = 1 << 14 };
 
-static bool shell_only(const TetcastVolume *volume) { return volume->traversal == TETCAST_TRAVERSAL_SHELL; }
+static bool shell_only(const TetcastVolume *volume) {
+  return volume->traversal == TETCAST_TRAVERSAL_SHELL;
+}
 
 static void grow(const TetcastVolume *volume, uint32_t vertex, double low[3], double high[3]) {
   double v[3];
@@ -33,7 +36,8 @@ void tc_shell_bounds(const void *user, uint32_t i, double low[3], double high[3]
     low[k] = INFINITY;
     high[k] = -INFINITY;
   }
-  for (int j = 0; j < (shell->faces ? 3 : 4); ++j) grow(shell->volume, vertices[j], low, high);
+  for (int j = 0; j < (shell->faces ? 3 : 4); ++j)
+    grow(shell->volume, vertices[j], low, high);
 }
 
 /* What the loops over vertices need. */
@@ -53,8 +57,10 @@ static bool take_positions(void *data, int64_t begin, int64_t end, int worker) {
     tc_mesh_vertex(take->mesh, volume->vertex_source[i], p);
     for (int k = 0; k < 3; ++k) {
       const double x = tc_without_tiny(p[k] * take->scale[0] * take->scale[1]);
-      if (volume->positions_are_double) ((double *)volume->positions)[3 * i + k] = x;
-      else ((float *)volume->positions)[3 * i + k] = (float)x;
+      if (volume->positions_are_double)
+        ((double *)volume->positions)[3 * i + k] = x;
+      else
+        ((float *)volume->positions)[3 * i + k] = (float)x;
     }
   }
   return true;
@@ -63,14 +69,17 @@ static bool take_positions(void *data, int64_t begin, int64_t end, int worker) {
 static bool take_ranks(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   const Take *take = data;
-  for (int64_t i = begin; i < end; ++i) take->rank[take->volume->vertex_source[i]] = (uint32_t)i;
+  for (int64_t i = begin; i < end; ++i)
+    take->rank[take->volume->vertex_source[i]] = (uint32_t)i;
   return true;
 }
 
 static TetcastStatus take_vertices(TetcastVolume *volume, const TetcastMesh *mesh) {
   double largest = 0;
-  for (int k = 0; k < 6; ++k) largest = fmax(largest, fabs(mesh->bounds[k]));
-  if (largest > 0) frexp(largest, &volume->exponent);
+  for (int k = 0; k < 6; ++k)
+    largest = fmax(largest, fabs(mesh->bounds[k]));
+  if (largest > 0)
+    frexp(largest, &volume->exponent);
   volume->positions_are_double = mesh->vertices.type == TETCAST_TYPE_FLOAT64;
   const size_t size = volume->positions_are_double ? sizeof(double) : sizeof(float);
   if (!tc_allocate_array(volume->context, &volume->positions, 3 * volume->vertex_count + 1, size, "vertices")) {
@@ -82,7 +91,8 @@ static TetcastStatus take_vertices(TetcastVolume *volume, const TetcastMesh *mes
   tc_parallel_for(volume->context, volume->vertex_count, GRAIN, take_positions, &take, NULL);
   double diagonal2 = 0;
   for (int k = 0; k < 3; ++k) {
-    const double low = ldexp(mesh->bounds[2 * k], -volume->exponent), high = ldexp(mesh->bounds[2 * k + 1], -volume->exponent);
+    const double low = ldexp(mesh->bounds[2 * k], -volume->exponent),
+                 high = ldexp(mesh->bounds[2 * k + 1], -volume->exponent);
     volume->center[k] = 0.5 * low + 0.5 * high;
     diagonal2 += (high - low) * (high - low);
   }
@@ -97,7 +107,8 @@ static bool take_corners(void *data, int64_t begin, int64_t end, int worker) {
   for (int64_t i = begin; i < end; ++i) {
     uint32_t v[4], order = 0;
     tc_mesh_cell(take->mesh, take->volume->adjacency.source[i], v);
-    for (int k = 0; k < 4; ++k) v[k] = take->rank[v[k]];
+    for (int k = 0; k < 4; ++k)
+      v[k] = take->rank[v[k]];
     for (int k = 0; k < 4; ++k) {
       const int place = (v[k] > v[0]) + (v[k] > v[1]) + (v[k] > v[2]) + (v[k] > v[3]);
       order |= (uint32_t)k << 2 * place;
@@ -115,48 +126,60 @@ static bool take_corner_vertices(void *data, int64_t begin, int64_t end, int wor
     tc_mesh_cell(take->mesh, take->volume->adjacency.source[i], v);
     for (int k = 0; k < 4; ++k) {
       const uint32_t own = take->rank[v[k]];
-      const int place = (own > take->rank[v[0]]) + (own > take->rank[v[1]]) + (own > take->rank[v[2]]) + (own > take->rank[v[3]]);
+      const int place =
+          (own > take->rank[v[0]]) + (own > take->rank[v[1]]) + (own > take->rank[v[2]]) + (own > take->rank[v[3]]);
       take->volume->corner_vertices[i][place] = v[k];
     }
   }
   return true;
 }
 
-/* The mesh's vertices in faces of one cell, in the volume's order: cells meet there if their vertices lie at one place. */
+/* The mesh's vertices in faces of one cell, in the volume's order: cells meet there if their vertices lie at one place.
+ */
 static TetcastStatus shell_vertices(const TetcastVolume *volume, uint32_t **out, int64_t *count) {
   uint8_t *used;
-  const int64_t shell = volume->adjacency.shell_count, most = 3 * shell < volume->vertex_count ? 3 * shell : volume->vertex_count;
-  if (!tc_allocate_array(volume->context, (void **)&used, volume->vertex_count, 1, "vertices of the boundary")) return TETCAST_ERROR_MEMORY;
+  const int64_t shell = volume->adjacency.shell_count,
+                most = 3 * shell < volume->vertex_count ? 3 * shell : volume->vertex_count;
+  if (!tc_allocate_array(volume->context, (void **)&used, volume->vertex_count, 1, "vertices of the boundary"))
+    return TETCAST_ERROR_MEMORY;
   if (!tc_allocate_array(volume->context, (void **)out, most, sizeof **out, "vertices of the boundary")) {
     tc_release(volume->context, used);
     return TETCAST_ERROR_MEMORY;
   }
   memset(used, 0, (size_t)volume->vertex_count);
   for (int64_t i = 0; i < shell; ++i) {
-    for (int k = 0; k < 3; ++k) used[volume->adjacency.shell[i].vertex[k]] = 1;
+    for (int k = 0; k < 3; ++k)
+      used[volume->adjacency.shell[i].vertex[k]] = 1;
   }
   *count = 0;
   for (int64_t i = 0; i < volume->vertex_count; ++i) {
-    if (used[i]) (*out)[(*count)++] = volume->vertex_source[i];
+    if (used[i])
+      (*out)[(*count)++] = volume->vertex_source[i];
   }
   tc_release(volume->context, used);
   return TETCAST_OK;
 }
 
-/* Lets cells meet at vertices that lie at one place. Where all vertices are the cells' common ones, all this takes is a look at those of the boundary. */
+/* Lets cells meet at vertices that lie at one place. Where all vertices are the cells' common ones, all this takes is a
+ * look at those of the boundary. */
 static TetcastStatus join_cells(TetcastVolume *volume, Take *take) {
   uint32_t *vertices = NULL;
   int64_t count = 0;
   TetcastStatus status = shell_vertices(volume, &vertices, &count);
-  if (!status) status = tc_weld(take->mesh, vertices, count, &volume->welds, &volume->weld_count);
+  if (!status)
+    status = tc_weld(take->mesh, vertices, count, &volume->welds, &volume->weld_count);
   tc_release(volume->context, vertices);
-  if (status || volume->weld_count == 0) return status;
-  for (int64_t i = 0; i < volume->weld_count; ++i) take->rank[volume->welds[i].vertex] = take->rank[volume->welds[i].with];
+  if (status || volume->weld_count == 0)
+    return status;
+  for (int64_t i = 0; i < volume->weld_count; ++i)
+    take->rank[volume->welds[i].vertex] = take->rank[volume->welds[i].with];
   tc_adjacency_clear(&volume->adjacency);
   status = tc_adjacency_build(take->mesh, take->rank, true, NULL, &volume->adjacency);
   const int64_t cells = volume->adjacency.cell_count;
-  if (status) return status;
-  if (!tc_allocate_array(volume->context, (void **)&volume->corner_vertices, cells, sizeof *volume->corner_vertices, "corners")) {
+  if (status)
+    return status;
+  if (!tc_allocate_array(volume->context, (void **)&volume->corner_vertices, cells, sizeof *volume->corner_vertices,
+                         "corners")) {
     return TETCAST_ERROR_MEMORY;
   }
   tc_parallel_for(volume->context, cells, GRAIN, take_corner_vertices, take, NULL);
@@ -165,13 +188,15 @@ static TetcastStatus join_cells(TetcastVolume *volume, Take *take) {
 
 static TetcastStatus order_corners(TetcastVolume *volume, Take *take) {
   const int64_t count = volume->adjacency.cell_count;
-  if (!tc_allocate_array(volume->context, (void **)&volume->corner_order, count, 1, "corners")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(volume->context, (void **)&volume->corner_order, count, 1, "corners"))
+    return TETCAST_ERROR_MEMORY;
   tc_parallel_for(volume->context, count, GRAIN, take_corners, take, NULL);
   return TETCAST_OK;
 }
 
 /* The adjacency in the numbering of volume->vertex_source. */
-static TetcastStatus take_cells(TetcastVolume *volume, const TetcastMesh *mesh, bool corners, const TetcastProgress *progress) {
+static TetcastStatus take_cells(TetcastVolume *volume, const TetcastMesh *mesh, bool corners,
+                                const TetcastProgress *progress) {
   Take take = {.volume = volume, .mesh = mesh};
   if (!tc_allocate_array(volume->context, (void **)&take.rank, volume->vertex_count, sizeof *take.rank, "vertices")) {
     return TETCAST_ERROR_MEMORY;
@@ -179,10 +204,13 @@ static TetcastStatus take_cells(TetcastVolume *volume, const TetcastMesh *mesh, 
   tc_parallel_for(volume->context, volume->vertex_count, GRAIN, take_ranks, &take, NULL);
   TcAdjacency *adjacency = &volume->adjacency;
   TetcastStatus status = tc_adjacency_build(mesh, take.rank, true, progress, adjacency);
-  if (!status) status = join_cells(volume, &take);
-  if (!status && corners) status = order_corners(volume, &take);
+  if (!status)
+    status = join_cells(volume, &take);
+  if (!status && corners)
+    status = order_corners(volume, &take);
   tc_release(volume->context, take.rank);
-  if (status || !shell_only(volume)) return status;
+  if (status || !shell_only(volume))
+    return status;
   const uint32_t end = (uint32_t)adjacency->cell_count; /* a cell from which nothing leads on, for lanes that rest */
   adjacency->cells[adjacency->cell_count] = (TcCell){0, {end, end, end, end}};
   status = tc_clusters_build(volume->context, adjacency, (const uint32_t(*)[4])adjacency->vertices, &volume->clusters);
@@ -193,9 +221,11 @@ static TetcastStatus take_cells(TetcastVolume *volume, const TetcastMesh *mesh, 
 
 static double triangle_area(const TetcastVolume *volume, const uint32_t vertex[3]) {
   double p[3][3], e[2][3];
-  for (int j = 0; j < 3; ++j) tc_volume_vertex(volume, vertex[j], p[j]);
+  for (int j = 0; j < 3; ++j)
+    tc_volume_vertex(volume, vertex[j], p[j]);
   for (int j = 0; j < 2; ++j) {
-    for (int k = 0; k < 3; ++k) e[j][k] = p[j + 1][k] - p[0][k];
+    for (int k = 0; k < 3; ++k)
+      e[j][k] = p[j + 1][k] - p[0][k];
   }
   const double x = e[0][1] * e[1][2] - e[0][2] * e[1][1], y = e[0][2] * e[1][0] - e[0][0] * e[1][2],
                z = e[0][0] * e[1][1] - e[0][1] * e[1][0];
@@ -212,49 +242,60 @@ static void describe(TetcastVolume *volume, const TetcastMesh *mesh) {
   info->shell_faces = shell_only(volume) ? volume->adjacency.shell_count : volume->cell_count;
   info->traversal = volume->traversal;
   double area = 0;
-  for (int64_t i = 0; i < volume->adjacency.shell_count; ++i) area += triangle_area(volume, volume->adjacency.shell[i].vertex);
+  for (int64_t i = 0; i < volume->adjacency.shell_count; ++i)
+    area += triangle_area(volume, volume->adjacency.shell[i].vertex);
   info->boundary_area = ldexp(ldexp(area, volume->exponent), volume->exponent);
 }
 
 static TetcastStatus build(TetcastVolume *volume, const TetcastMesh *mesh, const TetcastVolumeDesc *desc) {
   TcStage stage;
   TetcastStatus status = tc_order_vertices(mesh, &volume->vertex_source);
-  if (!status) status = take_vertices(volume, mesh);
-  if (!status) status = take_cells(volume, mesh, desc->corners, tc_stage(&stage, &desc->progress, 0.1, 1));
-  if (status) return status;
+  if (!status)
+    status = take_vertices(volume, mesh);
+  if (!status)
+    status = take_cells(volume, mesh, desc->corners, tc_stage(&stage, &desc->progress, 0.1, 1));
+  if (status)
+    return status;
   volume->cell_count = volume->adjacency.cell_count;
   if (volume->cell_count == 0) {
     return tc_error(volume->context, TETCAST_ERROR_DATA, "the mesh has no cell with an inside (%" PRId64 " tetrahedra)",
                     volume->mesh_cell_count);
   }
   if (volume->cell_count < volume->mesh_cell_count) {
-    tc_warning(volume->context, "%" PRId64 " tetrahedra left out: %" PRId64 " with a vertex twice, %" PRId64
-               " duplicates of others", volume->mesh_cell_count - volume->cell_count, volume->adjacency.collapsed,
-               volume->adjacency.duplicates);
+    tc_warning(volume->context,
+               "%" PRId64 " tetrahedra left out: %" PRId64 " with a vertex twice, %" PRId64 " duplicates of others",
+               volume->mesh_cell_count - volume->cell_count, volume->adjacency.collapsed, volume->adjacency.duplicates);
   }
   if (volume->adjacency.nonmanifold > 0 && shell_only(volume)) {
-    tc_warning(volume->context, "%" PRId64 " faces have three cells or more, which overlap then: the traversal of faces is right, the shell's may not be",
-               volume->adjacency.nonmanifold);
+    tc_warning(
+        volume->context,
+        "%" PRId64
+        " faces have three cells or more, which overlap then: the traversal of faces is right, the shell's may not be",
+        volume->adjacency.nonmanifold);
   }
   describe(volume, mesh);
-  if (!shell_only(volume)) tc_adjacency_drop_links(&volume->adjacency);
+  if (!shell_only(volume))
+    tc_adjacency_drop_links(&volume->adjacency);
   volume->shell = (TcShell){.volume = volume, .faces = volume->adjacency.shell, .count = volume->info.shell_faces};
-  return tc_embree_create(volume->context, volume->shell.count, volume->center, volume->radius, tc_shell_bounds, &volume->shell,
-                          &volume->shell.embree);
+  return tc_embree_create(volume->context, volume->shell.count, volume->center, volume->radius, tc_shell_bounds,
+                          &volume->shell, &volume->shell.embree);
 }
 
 TetcastStatus tc_volume_create(TetcastContext *context, const TetcastMesh *mesh, const TetcastVolumeDesc *desc,
                                TetcastVolume **out) {
-  if (mesh->tetrahedra.count == 0) return tc_error(context, TETCAST_ERROR_DATA, "the mesh has no tetrahedra");
+  if (mesh->tetrahedra.count == 0)
+    return tc_error(context, TETCAST_ERROR_DATA, "the mesh has no tetrahedra");
   TetcastVolume *volume;
-  if (!tc_allocate_array(context, (void **)&volume, 1, sizeof *volume, "volume")) return TETCAST_ERROR_MEMORY;
+  if (!tc_allocate_array(context, (void **)&volume, 1, sizeof *volume, "volume"))
+    return TETCAST_ERROR_MEMORY;
   memset(volume, 0, sizeof *volume);
   volume->context = context;
   volume->traversal = desc->traversal;
   volume->vertex_count = mesh->vertices.count;
   volume->mesh_cell_count = mesh->tetrahedra.count;
   TetcastStatus status = tc_shared_create(context, &volume->shared);
-  if (!status) status = build(volume, mesh, desc);
+  if (!status)
+    status = build(volume, mesh, desc);
   if (status) {
     tc_volume_destroy(volume);
     return status;
@@ -264,11 +305,13 @@ TetcastStatus tc_volume_create(TetcastContext *context, const TetcastMesh *mesh,
 }
 
 void tc_volume_destroy(TetcastVolume *volume) {
-  if (!volume) return;
+  if (!volume)
+    return;
   TetcastContext *context = volume->context;
   tc_embree_destroy(volume->shell.embree);
   tc_clusters_clear(&volume->clusters);
-  if (volume->adjacency.context) tc_adjacency_clear(&volume->adjacency);
+  if (volume->adjacency.context)
+    tc_adjacency_clear(&volume->adjacency);
   tc_release(context, volume->positions);
   tc_release(context, volume->vertex_source);
   tc_release(context, volume->corner_order);
@@ -283,11 +326,12 @@ void tc_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info) {
   const size_t position = 3 * (volume->positions_are_double ? sizeof(double) : sizeof(float));
   const TcAdjacency *adjacency = &volume->adjacency;
   const size_t cells = (size_t)volume->cell_count, shell = (size_t)adjacency->shell_count;
-  info->bytes = sizeof *volume + (size_t)volume->vertex_count * (position + sizeof *volume->vertex_source) + tc_embree_bytes(volume->shell.embree) + tc_clusters_bytes(&volume->clusters) +
+  info->bytes = sizeof *volume + (size_t)volume->vertex_count * (position + sizeof *volume->vertex_source) +
+                tc_embree_bytes(volume->shell.embree) + tc_clusters_bytes(&volume->clusters) +
                 (adjacency->cells ? cells * sizeof *adjacency->cells : 0) +
                 (adjacency->shell ? shell * sizeof *adjacency->shell : 0) +
                 (adjacency->vertices ? cells * sizeof *adjacency->vertices : 0) +
                 (adjacency->source ? cells * sizeof *adjacency->source : 0) + (volume->corner_order ? cells : 0) +
-                (volume->corner_vertices ? cells * sizeof *volume->corner_vertices : 0) + (size_t)volume->weld_count * sizeof *volume->welds +
-                tc_shared_bytes(volume->shared);
+                (volume->corner_vertices ? cells * sizeof *volume->corner_vertices : 0) +
+                (size_t)volume->weld_count * sizeof *volume->welds + tc_shared_bytes(volume->shared);
 }

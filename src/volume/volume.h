@@ -16,14 +16,14 @@ typedef struct TcShell {
   const TetcastVolume *volume;
   const TcShellFace *faces; /* [count]; with TETCAST_TRAVERSAL_FACES none: Embree holds the cells */
   int64_t count;
-  TcEmbree *embree;         /* over the faces or cells; NULL if there are none */
-  uint8_t *visible;         /* of each cluster; NULL: all are */
-  int64_t visible_count;    /* how many clusters are, if not all */
-  void *memory;             /* of `faces`, if they are its own */
+  TcEmbree *embree;      /* over the faces or cells; NULL if there are none */
+  uint8_t *visible;      /* of each cluster; NULL: all are */
+  int64_t visible_count; /* how many clusters are, if not all */
+  void *memory;          /* of `faces`, if they are its own */
 } TcShell;
 
-/* Coordinates are stored times 2^−exponent, so that the largest is near 1: exact, and no unit can overflow or underflow later.
- * "Scaled" below means in these units. */
+/* Coordinates are stored times 2^−exponent, so that the largest is near 1: exact, and no unit can overflow or underflow
+ * later. "Scaled" below means in these units. */
 struct TetcastVolume {
   TetcastContext *context;
   TetcastTraversal traversal;
@@ -31,22 +31,26 @@ struct TetcastVolume {
   double center[3], radius; /* of a sphere around all cells, scaled */
   int64_t vertex_count, cell_count, mesh_cell_count;
 
-  /* [vertex_count][3], and room for one number more, so that four may be read at once: x, y, z scaled, as the mesh has them in single or in
-   * double precision. In an order of the volume's own, along a curve through space; cells follow it (adjacency.h). */
+  /* [vertex_count][3], and room for one number more, so that four may be read at once: x, y, z scaled, as the mesh has
+   * them in single or in double precision. In an order of the volume's own, along a curve through space; cells follow
+   * it (adjacency.h). */
   void *positions;
   bool positions_are_double;
   uint32_t *vertex_source; /* [vertex_count]: the mesh's vertex */
 
-  /* Vertices that lie where others do have become one with these (mesh/weld.h). Values stay each cell's own: NULL where there are no such vertices. */
-  TcWeld *welds;                 /* [weld_count], of the mesh's vertices */
+  /* Vertices that lie where others do have become one with these (mesh/weld.h). Values stay each cell's own: NULL where
+   * there are no such vertices. */
+  TcWeld *welds; /* [weld_count], of the mesh's vertices */
   int64_t weld_count;
-  uint32_t (*corner_vertices)[4]; /* [cell_count]: for each of a cell's vertices in ascending order, the mesh's vertex that the cell has there */
+  uint32_t (*corner_vertices)[4]; /* [cell_count]: for each of a cell's vertices in ascending order, the mesh's vertex
+                                     that the cell has there */
 
-  uint8_t *corner_order; /* [cell_count]: two bits for each of a cell's vertices in ascending order, which of the mesh's it is; NULL: not asked for */
+  uint8_t *corner_order; /* [cell_count]: two bits for each of a cell's vertices in ascending order, which of the mesh's
+                            it is; NULL: not asked for */
 
   TcAdjacency adjacency; /* without cells where Embree holds every cell; `vertices` of it only there */
-  TcClusters clusters; /* none where Embree holds every cell */
-  TcShell shell;       /* of the whole volume */
+  TcClusters clusters;   /* none where Embree holds every cell */
+  TcShell shell;         /* of the whole volume */
 
   TcShared *shared; /* fields in the volume's order (rows.h), which scenes share */
   TetcastVolumeInfo info;
@@ -63,16 +67,20 @@ void tc_shell_bounds(const void *shell, uint32_t i, double low[3], double high[3
 /* Coordinates of smaller magnitude, scaled, count as zero (walk/ray.h). */
 #define TC_TINY 0x1p-150
 
-static inline double tc_without_tiny(double x) { return x > -TC_TINY && x < TC_TINY ? 0 : x; }
+static inline double tc_without_tiny(double x) {
+  return x > -TC_TINY && x < TC_TINY ? 0 : x;
+}
 
 /* x, y, z scaled. */
 static inline void tc_volume_vertex(const TetcastVolume *volume, uint32_t i, double position[3]) {
   if (volume->positions_are_double) {
     const double *p = (const double *)volume->positions + 3 * (size_t)i;
-    for (int k = 0; k < 3; ++k) position[k] = p[k];
+    for (int k = 0; k < 3; ++k)
+      position[k] = p[k];
   } else {
     const float *p = (const float *)volume->positions + 3 * (size_t)i;
-    for (int k = 0; k < 3; ++k) position[k] = (double)p[k];
+    for (int k = 0; k < 3; ++k)
+      position[k] = (double)p[k];
   }
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Volumes whose cells Embree holds one by one (TETCAST_TRAVERSAL_FACES): each that a ray crosses is found for itself, whatever its neighbours are. One lane. */
+/* Volumes whose cells Embree holds one by one (TETCAST_TRAVERSAL_FACES): each that a ray crosses is found for itself,
+ * whatever its neighbours are. One lane. */
 #ifndef TC_WALK_CELLS_H
 #define TC_WALK_CELLS_H
 
@@ -13,17 +14,20 @@ typedef struct TcCellFaces {
 } TcCellFaces;
 
 /* False: the ray passes the cell. It crosses none or exactly two of its faces. */
-static bool tc_cell_faces(const unsigned on, const TcGround *ground, const TcRays *rays, uint32_t cell, TcCellFaces *faces) {
+static bool tc_cell_faces(const unsigned on, const TcGround *ground, const TcRays *rays, uint32_t cell,
+                          TcCellFaces *faces) {
   const uint32_t *vertex = ground->shell->volume->adjacency.vertices[cell];
   TcLanePoints p[4];
-  for (int k = 0; k < 4; ++k) tc_points_of_one(ground, rays, vertex[k], &p[k]);
+  for (int k = 0; k < 4; ++k)
+    tc_points_of_one(ground, rays, vertex[k], &p[k]);
   int count = 0;
   for (int k = 0; k < 4 && count < 2; ++k) {
     const TcLanePoints v[3] = {p[k], p[(k + 1) & 3], p[(k + 2) & 3]};
     TcVec e[3];
     tc_edges_of(tc_all(), v, e);
     const unsigned negative = tc_bits(tc_negative(e[0])) + tc_bits(tc_negative(e[1])) + tc_bits(tc_negative(e[2]));
-    if (negative != 0 && negative != 3) continue;
+    if (negative != 0 && negative != 3)
+      continue;
     for (int j = 0; j < 3; ++j) {
       faces->v[count][j] = v[j];
       faces->weight[count][j] = tc_abs(e[j]);
@@ -47,7 +51,8 @@ static void tc_cell_at(const unsigned on, const TcGround *ground, TcPacket *p, c
   memcpy(p->v, faces->v[i], sizeof p->v);
   memcpy(p->weight, faces->weight[i], sizeof p->weight);
   p->at = faces->at[i];
-  if (on & TC_BOUND) p->shift += tc_packet_shift(ground, p);
+  if (on & TC_BOUND)
+    p->shift += tc_packet_shift(ground, p);
 }
 
 /* The scalar at the corners of a face, with TC_CORNERS. */
@@ -56,7 +61,8 @@ static TcVec tc_cell_corner_value(const TcGround *ground, uint32_t cell, const T
   TcVec value[3];
   for (int k = 0; k < 3; ++k) {
     int rank = 0;
-    while (vertex[rank] != TC_AT(p->v[k].id, 0)) ++rank;
+    while (vertex[rank] != TC_AT(p->v[k].id, 0))
+      ++rank;
     value[k] = tc_set((TcReal)tc_rows_value(ground->values, cell, rank));
   }
   return tc_weighted(p->at.barycentric, value[0], value[1], value[2]);
@@ -76,9 +82,11 @@ static void tc_cell_candidate(void *user, uint32_t i, unsigned lanes) {
   for (; lanes; lanes &= lanes - 1) {
     const TcWaiting *waiting = &((const TcQueue *)user)->waiting[__builtin_ctz(lanes)];
     TcCellFaces faces;
-    if (!tc_cell_faces(TC_CELLS, ground, &waiting->rays, i, &faces)) continue;
+    if (!tc_cell_faces(TC_CELLS, ground, &waiting->rays, i, &faces))
+      continue;
     TcHit *hit = tc_hits_append(waiting->hits);
-    if (hit) *hit = (TcHit){.begin = (double)TC_AT(faces.at[0].z, 0), .end = (double)TC_AT(faces.at[1].z, 0), .id = i};
+    if (hit)
+      *hit = (TcHit){.begin = (double)TC_AT(faces.at[0].z, 0), .end = (double)TC_AT(faces.at[1].z, 0), .id = i};
   }
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What changes the state of a kernel's loop, as bits of a mask that is a constant wherever kernels use it: a scene's kernel has no instruction for what
- * the scene does not need. */
+/* What changes the state of a kernel's loop, as bits of a mask that is a constant wherever kernels use it: a scene's
+ * kernel has no instruction for what the scene does not need. */
 #ifndef TC_WALK_FEATURES_H
 #define TC_WALK_FEATURES_H
 

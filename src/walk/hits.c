@@ -11,7 +11,8 @@ bool tc_hits_grow(TcHits *hits) {
     hits->out_of_memory = true;
     return false;
   }
-  if (hits->count) memcpy(data, hits->data, (size_t)hits->count * sizeof *data);
+  if (hits->count)
+    memcpy(data, hits->data, (size_t)hits->count * sizeof *data);
   tc_release(hits->context, hits->data);
   hits->data = data;
   hits->capacity = capacity;
@@ -20,14 +21,18 @@ bool tc_hits_grow(TcHits *hits) {
 
 static int compare_hits(const void *left, const void *right) {
   const TcHit *a = left, *b = right;
-  if (a->begin != b->begin) return a->begin < b->begin ? -1 : 1;
-  if (a->end != b->end) return a->end < b->end ? -1 : 1;
+  if (a->begin != b->begin)
+    return a->begin < b->begin ? -1 : 1;
+  if (a->end != b->end)
+    return a->end < b->end ? -1 : 1;
   return a->id < b->id ? -1 : a->id > b->id;
 }
 
 void tc_hits_sort(TcHits *hits) {
-  if (hits->count == 2 && compare_hits(&hits->data[0], &hits->data[1]) <= 0) return;
-  if (hits->count > 1) qsort(hits->data, (size_t)hits->count, sizeof *hits->data, compare_hits);
+  if (hits->count == 2 && compare_hits(&hits->data[0], &hits->data[1]) <= 0)
+    return;
+  if (hits->count > 1)
+    qsort(hits->data, (size_t)hits->count, sizeof *hits->data, compare_hits);
 }
 
 void tc_hits_clear(TcHits *hits) {

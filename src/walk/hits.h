@@ -5,7 +5,8 @@
 
 #include "base/base.h"
 
-/* A face of the shell that the ray crosses, at depth `begin`; where Embree holds cells, a cell that it crosses from begin to end. */
+/* A face of the shell that the ray crosses, at depth `begin`; where Embree holds cells, a cell that it crosses from
+ * begin to end. */
 typedef struct TcHit {
   double begin, end;
   uint32_t id; /* of the face or cell */

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The walk: from a face of the shell through cell after cell to the face of the shell where the ray leaves (shell.h), for a packet of rays. The cells a
- * ray meets form paths; each face joins at most two cells, so a path that starts at the shell can't return to a cell and ends at the shell: the
- * walk terminates on any adjacency, and every path is found from either end.
+/* The walk: from a face of the shell through cell after cell to the face of the shell where the ray leaves (shell.h),
+ * for a packet of rays. The cells a ray meets form paths; each face joins at most two cells, so a path that starts at
+ * the shell can't return to a cell and ends at the shell: the walk terminates on any adjacency, and every path is found
+ * from either end.
  *
- * A step is a chain (which cell, which vertex, where it lies, on which side of three edges, which neighbour) that waits for memory and for itself;
- * several packets take its parts by turns. */
+ * A step is a chain (which cell, which vertex, where it lies, on which side of three edges, which neighbour) that waits
+ * for memory and for itself; several packets take its parts by turns. */
 #ifndef TC_WALK_PACKET_H
 #define TC_WALK_PACKET_H
 
@@ -14,19 +15,21 @@
 
 typedef struct TcPacket {
   TcRays rays;
-  /* The face where each ray is: its vertices, counter-clockwise around the ray, each with the cross product of the two others, > 0. */
+  /* The face where each ray is: its vertices, counter-clockwise around the ray, each with the cross product of the two
+   * others, > 0. */
   TcLanePoints v[3];
   TcVec weight[3];
   TcCrossing at;
-  TcVec shift;     /* with TC_BOUND: how far off the depths may be, in all, at which what is seen jumps */
-  TcVec seen;           /* the depth up to which a path has been seen */
-  TcMask active;        /* lanes that are walking */
+  TcVec shift;   /* with TC_BOUND: how far off the depths may be, in all, at which what is seen jumps */
+  TcVec seen;    /* the depth up to which a path has been seen */
+  TcMask active; /* lanes that are walking */
 
   /* Of each lane, in memory for scalar instructions: */
-  _Alignas(64) uint32_t cell[TC_LANES]; /* the cell ahead; the one after the last, from which nothing leads on, where none is */
-  uint32_t face[TC_LANES];              /* XOR of the face's vertices */
-  uint32_t vertex[TC_LANES];            /* the cell's vertex that is not in the face */
-  uint32_t from[TC_LANES];              /* the cell that was crossed last */
+  _Alignas(64)
+      uint32_t cell[TC_LANES]; /* the cell ahead; the one after the last, from which nothing leads on, where none is */
+  uint32_t face[TC_LANES];     /* XOR of the face's vertices */
+  uint32_t vertex[TC_LANES];   /* the cell's vertex that is not in the face */
+  uint32_t from[TC_LANES];     /* the cell that was crossed last */
   uint32_t exit_cell[TC_LANES], exit_face[TC_LANES]; /* where a path ended */
 
   /* Paths: bits of lanes. */
@@ -50,10 +53,12 @@ TC_INLINE void tc_packet_rest(const TcGround *ground, TcPacket *p, TcMask mask) 
   TC_IN_MEMORY(p->face);
 }
 
-/* The lanes of `mask` forget their face: as long as they rest, steps make the XOR of its vertices anew, and what it names must be a vertex. */
+/* The lanes of `mask` forget their face: as long as they rest, steps make the XOR of its vertices anew, and what it
+ * names must be a vertex. */
 TC_INLINE void tc_packet_forget(TcPacket *p, TcMask mask) {
   const TcWord none = {0};
-  for (int k = 0; k < 3; ++k) p->v[k].id = tc_select_word(mask, none, p->v[k].id);
+  for (int k = 0; k < 3; ++k)
+    p->v[k].id = tc_select_word(mask, none, p->v[k].id);
 }
 
 /* Which vertex comes next, whose numbers are fetched while other things are done. */
@@ -62,14 +67,16 @@ TC_INLINE void tc_packet_expect(const TcGround *ground, TcPacket *p) {
   TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) {
     const uint32_t next = cells[5 * (size_t)p->cell[l]] ^ p->face[l];
     p->vertex[l] = next;
-    if (TC_SINGLE || ground->screen) __builtin_prefetch((const TcReal *)ground->screen->vertices + 4 * (size_t)next);
+    if (TC_SINGLE || ground->screen)
+      __builtin_prefetch((const TcReal *)ground->screen->vertices + 4 * (size_t)next);
   }
   TC_IN_MEMORY(p->vertex);
 }
 
 /* How far off the depths at which rays cross their faces may be. */
 TC_INLINE TcVec tc_packet_shift(const TcGround *ground, const TcPacket *p) {
-  const TcVec beside = tc_madd(tc_set((TcReal)ground->resolution.relative), p->at.reach, tc_set((TcReal)ground->resolution.beside));
+  const TcVec beside =
+      tc_madd(tc_set((TcReal)ground->resolution.relative), p->at.reach, tc_set((TcReal)ground->resolution.beside));
   return tc_madd(beside, p->at.tilt.z, tc_set((TcReal)ground->resolution.depth));
 }
 
@@ -79,13 +86,15 @@ TC_NOINLINE void tc_packet_set_out(const unsigned on, const TcGround *ground, Tc
   for (unsigned lanes = p->starting; lanes; lanes &= lanes - 1) {
     const int l = __builtin_ctz(lanes);
     const TcShellFace *face = &ground->shell->faces[p->hits[l].data[p->next[l] - 1].id];
-    for (int k = 0; k < 3; ++k) id[k][l] = face->vertex[k];
+    for (int k = 0; k < 3; ++k)
+      id[k][l] = face->vertex[k];
     p->cell[l] = face->cell;
     p->face[l] = face->vertex[0] ^ face->vertex[1] ^ face->vertex[2];
     p->again = (p->again & ~(1U << l)) | (unsigned)(p->hits[l].count - p->next[l] > 1) << l;
   }
   TcLanePoints v[3];
-  for (int k = 0; k < 3; ++k) tc_points_load(ground, &p->rays, id[k], &v[k]);
+  for (int k = 0; k < 3; ++k)
+    tc_points_load(ground, &p->rays, id[k], &v[k]);
   TcVec e[3];
   const TcMask mask = tc_mask_of(p->starting);
   tc_edges_of(mask, v, e);
@@ -94,20 +103,24 @@ TC_NOINLINE void tc_packet_set_out(const unsigned on, const TcGround *ground, Tc
   p->v[1] = tc_select_points(mask, tc_select_points(turn, v[2], v[1]), p->v[1]);
   p->v[2] = tc_select_points(mask, tc_select_points(turn, v[1], v[2]), p->v[2]);
   const TcVec weight[3] = {tc_abs(e[0]), tc_abs(tc_select(turn, e[2], e[1])), tc_abs(tc_select(turn, e[1], e[2]))};
-  for (int k = 0; k < 3; ++k) p->weight[k] = tc_select(mask, weight[k], p->weight[k]);
+  for (int k = 0; k < 3; ++k)
+    p->weight[k] = tc_select(mask, weight[k], p->weight[k]);
   tc_cross_face(on, ground, &p->rays, p->v, p->weight, &p->at);
   p->seen = tc_select(mask, tc_max(p->at.z, p->rays.begin), p->seen);
-  if (on & TC_BOUND) p->shift += tc_select(mask, tc_packet_shift(ground, p), tc_set(0));
+  if (on & TC_BOUND)
+    p->shift += tc_select(mask, tc_packet_shift(ground, p), tc_set(0));
   p->active = tc_or(p->active, mask);
   p->starting = 0;
 }
 
-/* With TC_CORNERS: the scalars of the cells that are crossed, at their four corners, those of the face's vertices first, then that of q. */
+/* With TC_CORNERS: the scalars of the cells that are crossed, at their four corners, those of the face's vertices
+ * first, then that of q. */
 TC_NOINLINE void tc_packet_corners(const TcGround *ground, const TcPacket *p, const TcWord *q, TcVec corner[4]) {
   const TcWord id[4] = {p->v[0].id, p->v[1].id, p->v[2].id, *q};
   for (int k = 0; k < 4; ++k) {
     const TcWord rank = tc_rank(id[k], id[(k + 1) & 3], id[(k + 2) & 3], id[(k + 3) & 3], id[k]);
-    for (int l = 0; l < TC_LANES; ++l) TC_AT(corner[k], l) = (TcReal)tc_rows_value(ground->values, p->cell[l], (int)TC_AT(rank, l));
+    for (int l = 0; l < TC_LANES; ++l)
+      TC_AT(corner[k], l) = (TcReal)tc_rows_value(ground->values, p->cell[l], (int)TC_AT(rank, l));
   }
 }
 
@@ -126,12 +139,15 @@ typedef struct TcCrossed {
 } TcCrossed;
 
 /* A step's first part: where the vertices of p->vertex lie. */
-TC_INLINE void tc_packet_look(const TcGround *ground, TcPacket *p, TcLanePoints *q) { tc_points_load(ground, &p->rays, p->vertex, q); }
+TC_INLINE void tc_packet_look(const TcGround *ground, TcPacket *p, TcLanePoints *q) {
+  tc_points_load(ground, &p->rays, p->vertex, q);
+}
 
-/* A step's second part: crosses the cells. Of the edges from the face's vertices to q the signs name the face through which the ray leaves: that without
- * v[k], where it passes q between the other two. Returns the lanes that found no way out; *reached: the highest bit is set where a lane is at the shell. */
-TC_INLINE TcMask tc_packet_cross(const unsigned on, const TcGround *ground, TcPacket *p, const TcLanePoints *q, TcCrossed *crossed,
-                                 uint32_t *reached) {
+/* A step's second part: crosses the cells. Of the edges from the face's vertices to q the signs name the face through
+ * which the ray leaves: that without v[k], where it passes q between the other two. Returns the lanes that found no way
+ * out; *reached: the highest bit is set where a lane is at the shell. */
+TC_INLINE TcMask tc_packet_cross(const unsigned on, const TcGround *ground, TcPacket *p, const TcLanePoints *q,
+                                 TcCrossed *crossed, uint32_t *reached) {
   const uint32_t *cells = (const uint32_t *)(const void *)ground->shell->volume->adjacency.cells;
   TcLanePoints *v = p->v;
   TcVec e[3];
@@ -145,11 +161,14 @@ TC_INLINE TcMask tc_packet_cross(const unsigned on, const TcGround *ground, TcPa
     const TcWord id = q->id;
     tc_packet_corners(ground, p, &id, corner);
     crossed->s0 = tc_weighted(p->at.barycentric, corner[0], corner[1], corner[2]);
-    crossed->range = tc_max(tc_most3(corner[0], corner[1], corner[2]), corner[3]) - tc_min(tc_least3(corner[0], corner[1], corner[2]), corner[3]);
+    crossed->range = tc_max(tc_most3(corner[0], corner[1], corner[2]), corner[3]) -
+                     tc_min(tc_least3(corner[0], corner[1], corner[2]), corner[3]);
   }
   TcMask negative[3], out[3];
-  for (int k = 0; k < 3; ++k) negative[k] = tc_and(p->active, tc_negative(e[k]));
-  for (int k = 0; k < 3; ++k) out[k] = tc_and_not(negative[(k + 1) % 3], negative[(k + 2) % 3]);
+  for (int k = 0; k < 3; ++k)
+    negative[k] = tc_and(p->active, tc_negative(e[k]));
+  for (int k = 0; k < 3; ++k)
+    out[k] = tc_and_not(negative[(k + 1) % 3], negative[(k + 2) % 3]);
   const TcWord left = tc_select_word(out[0], v[0].id, tc_select_word(out[1], v[1].id, v[2].id));
   const TcWord rank = tc_rank(left, q->id, v[0].id, v[1].id, v[2].id); /* that of the neighbour */
   uint32_t ranks[TC_LANES], any = 0;
@@ -166,13 +185,15 @@ TC_INLINE TcMask tc_packet_cross(const unsigned on, const TcGround *ground, TcPa
     const TcVec from_next = tc_abs(e[(k + 1) % 3]), from_last = tc_abs(e[(k + 2) % 3]);
     p->weight[k] = tc_select3(out[(k + 1) % 3], from_last, out[(k + 2) % 3], from_next, p->weight[k]);
   }
-  for (int k = 0; k < 3; ++k) v[k] = tc_select_points(out[k], *q, v[k]);
+  for (int k = 0; k < 3; ++k)
+    v[k] = tc_select_points(out[k], *q, v[k]);
   tc_store_word(p->face, v[0].id ^ v[1].id ^ v[2].id);
   TC_IN_MEMORY(p->face);
   tc_cross_face(on, ground, &p->rays, v, p->weight, &p->at);
   crossed->s1 = p->at.s;
   if (on & TC_CORNERS) {
-    for (int k = 0; k < 3; ++k) corner[k] = tc_select(out[k], corner[3], corner[k]);
+    for (int k = 0; k < 3; ++k)
+      corner[k] = tc_select(out[k], corner[3], corner[k]);
     crossed->s1 = tc_weighted(p->at.barycentric, corner[0], corner[1], corner[2]);
   }
   return tc_and_not(p->active, tc_or(tc_or(out[0], out[1]), out[2]));
@@ -183,7 +204,8 @@ TC_NOINLINE unsigned tc_packet_invisible(const TcShell *shell, const TcPacket *p
   unsigned result = 0;
   for (unsigned lanes = tc_bits(p->active); lanes; lanes &= lanes - 1) {
     const int l = __builtin_ctz(lanes);
-    if (p->cell[l] & TC_SHELL || !shell->visible[p->cell[l] >> TC_CLUSTER_BITS]) result |= 1U << l;
+    if (p->cell[l] & TC_SHELL || !shell->visible[p->cell[l] >> TC_CLUSTER_BITS])
+      result |= 1U << l;
   }
   return result;
 }
@@ -191,15 +213,18 @@ TC_NOINLINE unsigned tc_packet_invisible(const TcShell *shell, const TcPacket *p
 /* A step's third part: the lanes that are at the shell rest, and are those that wait. Where others go on to. */
 TC_INLINE unsigned tc_packet_reach(const unsigned on, const TcGround *ground, TcPacket *p, uint32_t reached) {
   unsigned ended = 0;
-  if (TC_UNLIKELY(ground->shell->visible != NULL)) ended = tc_packet_invisible(ground->shell, p);
-  else if (TC_UNLIKELY(reached & TC_SHELL)) ended = tc_bits(tc_and(p->active, tc_high_bit(tc_load_word(p->cell))));
+  if (TC_UNLIKELY(ground->shell->visible != NULL))
+    ended = tc_packet_invisible(ground->shell, p);
+  else if (TC_UNLIKELY(reached & TC_SHELL))
+    ended = tc_bits(tc_and(p->active, tc_high_bit(tc_load_word(p->cell))));
   if (TC_UNLIKELY(ended)) {
     for (unsigned lanes = ended; lanes; lanes &= lanes - 1) {
       const int l = __builtin_ctz(lanes);
       p->exit_cell[l] = p->from[l];
       p->exit_face[l] = p->face[l];
     }
-    if (on & TC_BOUND) p->shift += tc_select(tc_mask_of(ended), tc_packet_shift(ground, p), tc_set(0));
+    if (on & TC_BOUND)
+      p->shift += tc_select(tc_mask_of(ended), tc_packet_shift(ground, p), tc_set(0));
     tc_packet_rest(ground, p, tc_mask_of(ended));
   }
   tc_packet_expect(ground, p);
@@ -212,7 +237,8 @@ TC_INLINE unsigned tc_packet_reach(const unsigned on, const TcGround *ground, Tc
 static bool tc_packet_next_start(TcPacket *p, int lane) {
   const TcHits *hits = &p->hits[lane];
   int64_t next = p->next[lane];
-  while (next < hits->count && hits->data[next].done) ++next;
+  while (next < hits->count && hits->data[next].done)
+    ++next;
   p->next[lane] = next + 1;
   return next < hits->count;
 }
@@ -225,13 +251,18 @@ TC_NOINLINE void tc_packet_arrive(const TcShell *shell, TcPacket *p) {
     for (int64_t j = p->next[l]; j < hits->count; ++j) {
       const TcShellFace *face = &shell->faces[hits->data[j].id];
       /* Of one cell's faces each has another XOR. */
-      const bool here = face->cell == p->exit_cell[l] && (face->vertex[0] ^ face->vertex[1] ^ face->vertex[2]) == p->exit_face[l];
-      if (here) hits->data[j].done = true;
+      const bool here =
+          face->cell == p->exit_cell[l] && (face->vertex[0] ^ face->vertex[1] ^ face->vertex[2]) == p->exit_face[l];
+      if (here)
+        hits->data[j].done = true;
     }
-    if (tc_packet_next_start(p, l)) p->starting |= 1U << l;
+    if (tc_packet_next_start(p, l))
+      p->starting |= 1U << l;
   }
 }
 
-TC_INLINE bool tc_packet_runs(const TcPacket *p) { return p->starting || p->waiting || tc_any(p->active); }
+TC_INLINE bool tc_packet_runs(const TcPacket *p) {
+  return p->starting || p->waiting || tc_any(p->active);
+}
 
 #endif

@@ -15,8 +15,8 @@ typedef struct TcLines {
 /* Rays set up, those of `lanes` that may meet the volume. */
 typedef struct TcPlaced {
   TcLines lines;
-  TcWide from_center[3]; /* of the points where they are nearest to the volume's centre */
-  TcWide near;           /* these points' depths: distances from eye + offset */
+  TcWide from_center[3];     /* of the points where they are nearest to the volume's centre */
+  TcWide near;               /* these points' depths: distances from eye + offset */
   TcWide origin[3], rest[3]; /* in ray space: the same points, as the sum of two numbers */
   int64_t destination[TC_LANES];
   unsigned lanes;
@@ -30,20 +30,25 @@ static void tc_view_lines(const TcView *view, const TcWide *u, const TcWide *v, 
     lines->offset[k] = view->orthographic ? shift : tc_set_wide(0);
     lines->direction[k] = view->orthographic ? tc_set_wide(view->forward[k]) : view->forward[k] + shift;
   }
-  if (view->orthographic) return;
+  if (view->orthographic)
+    return;
   const TcWide *d = lines->direction, length = tc_sqrt_wide(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-  for (int k = 0; k < 3; ++k) lines->direction[k] /= length;
+  for (int k = 0; k < 3; ++k)
+    lines->direction[k] /= length;
 }
 
-/* In ray space, eye + offset + along · direction as origin + rest, to twice the precision: whatever `along` was rounded to, the point is on the ray,
- * and vertex − origin is as good as the vertex is. */
+/* In ray space, eye + offset + along · direction as origin + rest, to twice the precision: whatever `along` was rounded
+ * to, the point is on the ray, and vertex − origin is as good as the vertex is. */
 TC_NOINLINE void tc_place_exactly(const TetcastVolume *volume, TcPlaced *placed) {
   const TcLines *lines = &placed->lines;
   for (int k = 0; k < 3; ++k) {
     TC_EACH_LANE {
-      const double eye = TC_AT(lines->eye[k], l), offset = TC_AT(lines->offset[k], l), direction = TC_AT(lines->direction[k], l);
-      const double along = TC_AT(placed->near, l), product = along * direction, shift = product + offset, origin = eye + shift;
-      const double rest = tc_product_error(along, direction, product) + tc_sum_error(product, offset, shift) + tc_sum_error(eye, shift, origin);
+      const double eye = TC_AT(lines->eye[k], l), offset = TC_AT(lines->offset[k], l),
+                   direction = TC_AT(lines->direction[k], l);
+      const double along = TC_AT(placed->near, l), product = along * direction, shift = product + offset,
+                   origin = eye + shift;
+      const double rest = tc_product_error(along, direction, product) + tc_sum_error(product, offset, shift) +
+                          tc_sum_error(eye, shift, origin);
       const double kept = origin > -TC_TINY && origin < TC_TINY ? 0 : origin;
       TC_AT(placed->rest[k], l) = rest;
       TC_AT(placed->origin[k], l) = kept;
@@ -52,8 +57,9 @@ TC_NOINLINE void tc_place_exactly(const TetcastVolume *volume, TcPlaced *placed)
   }
 }
 
-/* Leaves out the rays that pass the volume's sphere, or the part of which that counts does, or that are NaN; the sphere has a margin that covers the
- * rounding here. On the screen only Embree needs the points, which need not be as exact. */
+/* Leaves out the rays that pass the volume's sphere, or the part of which that counts does, or that are NaN; the sphere
+ * has a margin that covers the rounding here. On the screen only Embree needs the points, which need not be as exact.
+ */
 static void tc_place(const TcGround *ground, TcPlaced *placed) {
   const TetcastVolume *volume = ground->shell->volume;
   const TcLines *lines = &placed->lines;
@@ -63,8 +69,10 @@ static void tc_place(const TcGround *ground, TcPlaced *placed) {
     along -= p[k] * lines->direction[k];
   }
   placed->near = along;
-  for (int k = 0; k < 3; ++k) p[k] += along * lines->direction[k];
-  if (!ground->screen) tc_place_exactly(volume, placed);
+  for (int k = 0; k < 3; ++k)
+    p[k] += along * lines->direction[k];
+  if (!ground->screen)
+    tc_place_exactly(volume, placed);
   const TcWide radius = tc_set_wide(volume->radius);
   const unsigned inside = tc_wide_le(p[0] * p[0] + p[1] * p[1] + p[2] * p[2], radius * radius);
   placed->lanes &= inside & tc_wide_le(lines->begin - along, radius) & tc_wide_le(-radius, lines->end - along);
@@ -75,7 +83,8 @@ static void tc_take_screen(const TcScreen *screen, const TcPlaced *placed, TcRay
   const TcLines *lines = &placed->lines;
   TcWide shift = tc_set_wide(-screen->distance); /* of depths against distances from the eye */
   if (screen->perspective) {
-    shift /= lines->direction[0] * screen->forward[0] + lines->direction[1] * screen->forward[1] + lines->direction[2] * screen->forward[2];
+    shift /= lines->direction[0] * screen->forward[0] + lines->direction[1] * screen->forward[1] +
+             lines->direction[2] * screen->forward[2];
   }
   rays->scale = screen->perspective ? tc_real_of_wide(shift) : tc_set(1);
   rays->begin = tc_real_of_wide(lines->begin + shift);
@@ -117,16 +126,20 @@ static unsigned tc_along_one_axis(const TcLines *lines, unsigned lanes, int *kz)
   unsigned result = 0;
   for (unsigned left = lanes; left; left &= left - 1) {
     const int l = __builtin_ctz(left);
-    const double x = fabs(TC_AT(lines->direction[0], l)), y = fabs(TC_AT(lines->direction[1], l)), z = fabs(TC_AT(lines->direction[2], l));
+    const double x = fabs(TC_AT(lines->direction[0], l)), y = fabs(TC_AT(lines->direction[1], l)),
+                 z = fabs(TC_AT(lines->direction[2], l));
     const int axis = z > (y > x ? y : x) ? 2 : y > x;
-    if (!result) *kz = axis;
-    if (axis == *kz) result |= 1U << l;
+    if (!result)
+      *kz = axis;
+    if (axis == *kz)
+      result |= 1U << l;
   }
   return result;
 }
 #endif
 
-/* The next rays of those placed, of one main axis where that matters; returns their lanes, which are those no more that are placed. */
+/* The next rays of those placed, of one main axis where that matters; returns their lanes, which are those no more that
+ * are placed. */
 static unsigned tc_take(const TcGround *ground, TcPlaced *placed, TcRays *rays) {
   unsigned lanes = placed->lanes;
 #if !TC_SINGLE

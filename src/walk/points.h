@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Vertices as the rays of a packet see them, a ray in each lane. There are two ways, decided for a whole frame:
  *
- * On the screen: vertices were projected for the camera (screen.h), and are moved by the ray's pixel. In perspective, with q = distance / z − 1 and edges'
- * values w, barycentric weights are in proportion to w (1 + q), and depths along the ray, from the centre's plane, are −distance |direction| Σ w q / Σ w (1 + q).
+ * On the screen: vertices were projected for the camera (screen.h), and are moved by the ray's pixel. In perspective,
+ * with q = distance / z − 1 and edges' values w, barycentric weights are in proportion to w (1 + q), and depths along
+ * the ray, from the centre's plane, are −distance |direction| Σ w q / Σ w (1 + q).
  *
- * In ray space, for any rays: vertices are sheared so that the ray is the z axis (Woop, Benthin, Wald: Watertight ray/triangle intersection, 2013).
- * Weights are w, depths from the point where the ray is nearest to the centre Σ w z / Σ w. */
+ * In ray space, for any rays: vertices are sheared so that the ray is the z axis (Woop, Benthin, Wald: Watertight
+ * ray/triangle intersection, 2013). Weights are w, depths from the point where the ray is nearest to the centre Σ w z /
+ * Σ w. */
 #ifndef TC_WALK_POINTS_H
 #define TC_WALK_POINTS_H
 
@@ -18,8 +20,8 @@
 /* What rays are walked through. */
 typedef struct TcGround {
   const TcShell *shell;
-  const TcRows *values;   /* a scalar that is interpolated, or constant in cells; NULL: none */
-  const TcScreen *screen; /* NULL: in ray space */
+  const TcRows *values;    /* a scalar that is interpolated, or constant in cells; NULL: none */
+  const TcScreen *screen;  /* NULL: in ray space */
   TcResolution resolution; /* with TC_BOUND */
 } TcGround;
 
@@ -33,7 +35,8 @@ typedef struct TcRays {
   TcVec scale;      /* what depths are multiplied with: −distance |direction| in perspective, else 1 */
   TcVec begin, end; /* the interval of depths that counts */
   /* Ray space: */
-  TcVec origin[3]; /* along kx, ky, kz, near the volume; what rounding took from it is in rest_x, rest_y, rest_z, sheared */
+  TcVec origin[3]; /* along kx, ky, kz, near the volume; what rounding took from it is in rest_x, rest_y, rest_z,
+                      sheared */
   TcVec shear_x, shear_y, inverse_z, rest_x, rest_y, rest_z;
   int kz; /* the directions' largest component, kx = (kz + 1) % 3, ky = (kz + 2) % 3 */
 } TcRays;
@@ -47,7 +50,8 @@ typedef struct TcLanePoints {
 
 /* ── on the screen ── */
 
-TC_INLINE void tc_points_on_screen(const void *vertices, const TcRays *rays, const uint32_t id[TC_LANES], TcLanePoints *p) {
+TC_INLINE void tc_points_on_screen(const void *vertices, const TcRays *rays, const uint32_t id[TC_LANES],
+                                   TcLanePoints *p) {
   const TcReal *at[TC_LANES];
   TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) at[l] = (const TcReal *)vertices + 4 * (size_t)id[l];
   TcVec component[4];
@@ -69,13 +73,15 @@ TC_INLINE void tc_points_on_screen(const void *vertices, const TcRays *rays, con
 #if !TC_SINGLE
 /* A point's components, those along kx, ky and kz, in the space of the rays. */
 TC_INLINE void tc_shear(const TcRays *rays, const TcVec component[3], TcLanePoints *p) {
-  const TcVec x = component[0] - rays->origin[0], y = component[1] - rays->origin[1], z = component[2] - rays->origin[2];
+  const TcVec x = component[0] - rays->origin[0], y = component[1] - rays->origin[1],
+              z = component[2] - rays->origin[2];
   p->x = x - rays->shear_x * z - rays->rest_x;
   p->y = y - rays->shear_y * z - rays->rest_y;
   p->d = z * rays->inverse_z - rays->rest_z;
 }
 
-TC_NOINLINE void tc_points_in_ray_space(const TcGround *ground, const TcRays *rays, const uint32_t id[TC_LANES], TcLanePoints *p) {
+TC_NOINLINE void tc_points_in_ray_space(const TcGround *ground, const TcRays *rays, const uint32_t id[TC_LANES],
+                                        TcLanePoints *p) {
   const TetcastVolume *volume = ground->shell->volume;
   const int kx = rays->kz == 2 ? 0 : rays->kz + 1, ky = rays->kz == 0 ? 2 : rays->kz - 1;
   TcVec component[3], s = tc_set(0);
@@ -87,11 +93,13 @@ TC_NOINLINE void tc_points_in_ray_space(const TcGround *ground, const TcRays *ra
   } else {
     for (int l = 0; l < TC_LANES; ++l) {
       const float *from = (const float *)volume->positions + 3 * (size_t)id[l];
-      TC_AT(component[0], l) = (double)from[kx], TC_AT(component[1], l) = (double)from[ky], TC_AT(component[2], l) = (double)from[rays->kz];
+      TC_AT(component[0], l) = (double)from[kx], TC_AT(component[1], l) = (double)from[ky],
+                          TC_AT(component[2], l) = (double)from[rays->kz];
     }
   }
   if (ground->values && ground->values->association == TETCAST_POINT) {
-    for (int l = 0; l < TC_LANES; ++l) TC_AT(s, l) = tc_rows_value(ground->values, id[l], 0);
+    for (int l = 0; l < TC_LANES; ++l)
+      TC_AT(s, l) = tc_rows_value(ground->values, id[l], 0);
   }
   tc_shear(rays, component, p);
   p->s = s;
@@ -107,12 +115,15 @@ TC_INLINE void tc_point_in_ray_space(const TcGround *ground, const TcRays *rays,
 }
 #endif
 
-TC_INLINE void tc_points_load(const TcGround *ground, const TcRays *rays, const uint32_t id[TC_LANES], TcLanePoints *p) {
+TC_INLINE void tc_points_load(const TcGround *ground, const TcRays *rays, const uint32_t id[TC_LANES],
+                              TcLanePoints *p) {
 #if TC_SINGLE
   tc_points_on_screen(ground->screen->vertices, rays, id, p);
 #else
-  if (TC_LIKELY(ground->screen != NULL)) tc_points_on_screen(ground->screen->vertices, rays, id, p);
-  else tc_points_in_ray_space(ground, rays, id, p);
+  if (TC_LIKELY(ground->screen != NULL))
+    tc_points_on_screen(ground->screen->vertices, rays, id, p);
+  else
+    tc_points_in_ray_space(ground, rays, id, p);
 #endif
   p->id = tc_load_word(id);
 }
@@ -122,7 +133,8 @@ TC_INLINE void tc_points_of_one(const TcGround *ground, const TcRays *rays, uint
 #if !TC_SINGLE
   if (TC_UNLIKELY(!ground->screen)) {
     tc_point_in_ray_space(ground, rays, id, p);
-    p->s = tc_set(ground->values && ground->values->association == TETCAST_POINT ? tc_rows_value(ground->values, id, 0) : 0);
+    p->s = tc_set(ground->values && ground->values->association == TETCAST_POINT ? tc_rows_value(ground->values, id, 0)
+                                                                                 : 0);
     p->id = tc_set_word(id);
     return;
   }
@@ -169,8 +181,8 @@ TC_INLINE void tc_point_beside(const TcGround *ground, const TcRays *rays, uint3
 TC_NOINLINE void tc_edges_tie(const TcLanePoints *a, const TcLanePoints *b, unsigned zero, TcVec *edge) {
   for (; zero; zero &= zero - 1) {
     const int l = __builtin_ctz(zero);
-    const double tie = tc_tie((double)TC_AT(a->x, l), (double)TC_AT(a->y, l), TC_AT(a->id, l), (double)TC_AT(b->x, l), (double)TC_AT(b->y, l),
-                              TC_AT(b->id, l));
+    const double tie = tc_tie((double)TC_AT(a->x, l), (double)TC_AT(a->y, l), TC_AT(a->id, l), (double)TC_AT(b->x, l),
+                              (double)TC_AT(b->y, l), TC_AT(b->id, l));
     const TcReal rounded = (TcReal)tie, least = TC_REAL_MIN; /* in single precision it may underflow */
     TC_AT(*edge, l) = tie > 0 ? (rounded > least ? rounded : least) : (rounded < -least ? rounded : -least);
   }
@@ -182,13 +194,16 @@ TC_INLINE TcMask tc_vanishes(const TcVec e[3]) {
   return TC_SINGLE ? tc_lt(least, tc_set(TC_REAL_MIN)) : tc_eq(least, tc_set(0));
 }
 
-/* Three cross products v[a[k]] × w[b[k]]: to a relative error of 2⁻⁵¹ (single precision: 2⁻²²), never zero, with the exact sign for the points given. That
- * edges have relative accuracy matters: they are the weights of depth and value, also on faces that are seen almost edge-on, where all three nearly
- * cancel. */
-TC_INLINE void tc_edges(TcMask active, const TcLanePoints v[], const TcLanePoints w[], const int a[3], const int b[3], TcVec e[3]) {
-  for (int k = 0; k < 3; ++k) e[k] = tc_determinant(v[a[k]].x, v[a[k]].y, w[b[k]].x, w[b[k]].y);
+/* Three cross products v[a[k]] × w[b[k]]: to a relative error of 2⁻⁵¹ (single precision: 2⁻²²), never zero, with the
+ * exact sign for the points given. That edges have relative accuracy matters: they are the weights of depth and value,
+ * also on faces that are seen almost edge-on, where all three nearly cancel. */
+TC_INLINE void tc_edges(TcMask active, const TcLanePoints v[], const TcLanePoints w[], const int a[3], const int b[3],
+                        TcVec e[3]) {
+  for (int k = 0; k < 3; ++k)
+    e[k] = tc_determinant(v[a[k]].x, v[a[k]].y, w[b[k]].x, w[b[k]].y);
   const TcMask zero = tc_and(active, tc_vanishes(e));
-  if (TC_LIKELY(!tc_any(zero))) return;
+  if (TC_LIKELY(!tc_any(zero)))
+    return;
   for (int k = 0; k < 3; ++k) {
     const TcLanePoints p = v[a[k]], q = w[b[k]]; /* copies, so that the others need no addresses */
     TcVec edge = e[k];
@@ -213,7 +228,8 @@ TC_INLINE TcLanePoints tc_select_points(TcMask m, TcLanePoints a, TcLanePoints b
                         tc_select_word(m, a.id, b.id)};
 }
 
-/* How much depth and scalar change over a face, at most, for each unit that a ray is moved beside it; a number with the range 1 changes by `one`. */
+/* How much depth and scalar change over a face, at most, for each unit that a ray is moved beside it; a number with the
+ * range 1 changes by `one`. */
 typedef struct TcTilt {
   TcVec s, z, one;
 } TcTilt;
@@ -226,15 +242,22 @@ typedef struct TcCrossing {
   TcTilt tilt;          /* with TC_BOUND */
 } TcCrossing;
 
-TC_INLINE TcVec tc_least3(TcVec a, TcVec b, TcVec c) { return tc_min(tc_min(a, b), c); }
-TC_INLINE TcVec tc_most3(TcVec a, TcVec b, TcVec c) { return tc_max(tc_max(a, b), c); }
+TC_INLINE TcVec tc_least3(TcVec a, TcVec b, TcVec c) {
+  return tc_min(tc_min(a, b), c);
+}
+TC_INLINE TcVec tc_most3(TcVec a, TcVec b, TcVec c) {
+  return tc_max(tc_max(a, b), c);
+}
 
-/* With λ the barycentric weights of the point beside the ray, and p = 1 + q in perspective, else 1, a vertex's number f is interpolated as
- * Σ λ p f / Σ λ p. Its derivative is Σ (f − f₀) p ∇λ / Σ λ p, |∇λ| at most the longest edge, which is below 2 √2 times `reach`, over twice the area; in all
- * at most the range of f times 8.5 reach max(p) / Σ w p, with w the edges' cross products, whose sum is twice the area. */
-TC_INLINE void tc_face_tilt(const unsigned on, bool perspective, const TcRays *rays, const TcLanePoints v[3], TcVec inverse, TcCrossing *c) {
+/* With λ the barycentric weights of the point beside the ray, and p = 1 + q in perspective, else 1, a vertex's number f
+ * is interpolated as Σ λ p f / Σ λ p. Its derivative is Σ (f − f₀) p ∇λ / Σ λ p, |∇λ| at most the longest edge, which
+ * is below 2 √2 times `reach`, over twice the area; in all at most the range of f times 8.5 reach max(p) / Σ w p, with
+ * w the edges' cross products, whose sum is twice the area. */
+TC_INLINE void tc_face_tilt(const unsigned on, bool perspective, const TcRays *rays, const TcLanePoints v[3],
+                            TcVec inverse, TcCrossing *c) {
   TcVec across[3];
-  for (int k = 0; k < 3; ++k) across[k] = tc_max(tc_abs(v[k].x), tc_abs(v[k].y));
+  for (int k = 0; k < 3; ++k)
+    across[k] = tc_max(tc_abs(v[k].x), tc_abs(v[k].y));
   c->reach = tc_most3(across[0], across[1], across[2]);
   const TcVec near = tc_most3(v[0].d, v[1].d, v[2].d), far = tc_least3(v[0].d, v[1].d, v[2].d);
   TcVec factor = (TcReal)8.5 * c->reach * inverse, range = near - far;
@@ -244,26 +267,31 @@ TC_INLINE void tc_face_tilt(const unsigned on, bool perspective, const TcRays *r
   }
   c->tilt.one = factor;
   c->tilt.z = factor * range;
-  if (on & TC_ASSOCIATIONS) return;
+  if (on & TC_ASSOCIATIONS)
+    return;
   c->tilt.s = factor * (tc_most3(v[0].s, v[1].s, v[2].s) - tc_least3(v[0].s, v[1].s, v[2].s));
 }
 
 /* The crossing of a face with vertices v, each weighted by the cross product of the two others. */
-TC_INLINE void tc_cross_face(const unsigned on, const TcGround *ground, const TcRays *rays, const TcLanePoints v[3], const TcVec weight[3],
-                             TcCrossing *c) {
+TC_INLINE void tc_cross_face(const unsigned on, const TcGround *ground, const TcRays *rays, const TcLanePoints v[3],
+                             const TcVec weight[3], TcCrossing *c) {
   const bool perspective = ground->screen && ground->screen->perspective;
   TcVec w[3] = {weight[0], weight[1], weight[2]};
   const TcVec n = tc_madd(w[0], v[0].d, tc_madd(w[1], v[1].d, w[2] * v[2].d));
   if (perspective) {
-    for (int k = 0; k < 3; ++k) w[k] = tc_madd(w[k], v[k].d, w[k]);
+    for (int k = 0; k < 3; ++k)
+      w[k] = tc_madd(w[k], v[k].d, w[k]);
   }
   const TcVec inverse = 1 / (w[0] + w[1] + w[2]);
   c->z = n * inverse * rays->scale;
   if (on & (TC_WEIGHTS | TC_CORNERS)) {
-    for (int k = 0; k < 3; ++k) c->barycentric[k] = w[k] * inverse;
+    for (int k = 0; k < 3; ++k)
+      c->barycentric[k] = w[k] * inverse;
   }
-  if (on & TC_BOUND) tc_face_tilt(on, perspective, rays, v, inverse, c);
-  if (on & TC_ASSOCIATIONS) return;
+  if (on & TC_BOUND)
+    tc_face_tilt(on, perspective, rays, v, inverse, c);
+  if (on & TC_ASSOCIATIONS)
+    return;
   const TcVec value = tc_madd(w[0], v[0].s, tc_madd(w[1], v[1].s, w[2] * v[2].s)) * inverse;
   /* In this order NaN stays NaN. */
   c->s = tc_max(tc_least3(v[0].s, v[1].s, v[2].s), tc_min(tc_most3(v[0].s, v[1].s, v[2].s), value));

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* From rays to the faces of the shell that they cross: rays wait until there are as many as Embree sees at once, and become packets. */
+/* From rays to the faces of the shell that they cross: rays wait until there are as many as Embree sees at once, and
+ * become packets. */
 #ifndef TC_WALK_QUEUE_H
 #define TC_WALK_QUEUE_H
 
@@ -44,34 +45,39 @@ static void tc_enqueue(TcPlaced *placed, TcQueue *queue) {
 TC_NOINLINE void tc_face_reached(const TcQueue *queue, const TcWaiting *waiting, uint32_t i, unsigned lanes) {
   const uint32_t *vertex = queue->ground->shell->faces[i].vertex;
   TcLanePoints p[3];
-  for (int k = 0; k < 3; ++k) tc_points_of_one(queue->ground, &waiting->rays, vertex[k], &p[k]);
+  for (int k = 0; k < 3; ++k)
+    tc_points_of_one(queue->ground, &waiting->rays, vertex[k], &p[k]);
   TcVec e[3];
   TcCrossing crossing;
   tc_edges_of(tc_mask_of(lanes), p, e);
   const TcMask negative[3] = {tc_negative(e[0]), tc_negative(e[1]), tc_negative(e[2])};
-  lanes &= tc_bits(tc_and(tc_and(negative[0], negative[1]), negative[2])) | ~tc_bits(tc_or(tc_or(negative[0], negative[1]), negative[2]));
+  lanes &= tc_bits(tc_and(tc_and(negative[0], negative[1]), negative[2])) |
+           ~tc_bits(tc_or(tc_or(negative[0], negative[1]), negative[2]));
   tc_cross_face(TC_CELLS, queue->ground, &waiting->rays, p, e, &crossing);
   TcReal depth[TC_LANES];
   tc_store(depth, crossing.z);
   for (; lanes; lanes &= lanes - 1) {
     const int l = __builtin_ctz(lanes);
     TcHit *hit = tc_hits_append(&waiting->hits[l]);
-    if (!hit) return;
-    hit->begin = hit->end = (double)depth[l]; /* member by member: what is put together in memory first has to be waited for */
+    if (!hit)
+      return;
+    hit->begin = hit->end =
+        (double)depth[l]; /* member by member: what is put together in memory first has to be waited for */
     hit->id = i;
     hit->done = false;
   }
 }
 
 /* In single precision a ray may meet the shell, or miss it, by rounding alone, also where it would go through a lot of
- * the mesh: such rays are walked again. Rounding moves each end of an edge by at most δ = beside + relative · its distance
- * from the ray, which is at most √2 times the largest coordinate c, and so the edge's cross product by at most
+ * the mesh: such rays are walked again. Rounding moves each end of an edge by at most δ = beside + relative · its
+ * distance from the ray, which is at most √2 times the largest coordinate c, and so the edge's cross product by at most
  * 2 √2 c δ + δ². What the product itself is rounded by is less than what 1.5 c, for √2 c, and 3 c, for 2 √2 c, have to
  * spare. */
 #if TC_SINGLE
 TC_INLINE TcVec tc_face_margin(const TcGround *ground, const TcVec x[3], const TcVec y[3]) {
   TcVec most = tc_set(0);
-  for (int k = 0; k < 3; ++k) most = tc_max(most, tc_max(tc_abs(x[k]), tc_abs(y[k])));
+  for (int k = 0; k < 3; ++k)
+    most = tc_max(most, tc_max(tc_abs(x[k]), tc_abs(y[k])));
   const TcVec relative = tc_set((TcReal)(1.5 * ground->resolution.relative));
   const TcVec moved = tc_madd(relative, most, tc_set((TcReal)ground->resolution.beside));
   return moved * tc_madd(tc_set(3), most, moved);
@@ -84,11 +90,14 @@ static void tc_face_candidate(void *user, uint32_t i, unsigned lanes) {
   const uint32_t *vertex = queue->ground->shell->faces[i].vertex;
   for (int j = 0; j < TC_QUEUE; ++j) {
     unsigned reached = lanes >> j * TC_LANES & TC_ALL_LANES;
-    if (!reached) continue;
+    if (!reached)
+      continue;
     TcWaiting *waiting = &queue->waiting[j];
     TcVec x[3], y[3];
-    for (int k = 0; k < 3; ++k) tc_point_beside(queue->ground, &waiting->rays, vertex[k], &x[k], &y[k]);
-    /* An edge has the sign of the difference of two products, rounded or not, if they differ: most lanes need no more. */
+    for (int k = 0; k < 3; ++k)
+      tc_point_beside(queue->ground, &waiting->rays, vertex[k], &x[k], &y[k]);
+    /* An edge has the sign of the difference of two products, rounded or not, if they differ: most lanes need no more.
+     */
     TcMask left = tc_none(), right = left;
 #if TC_SINGLE
     const TcVec margin = tc_face_margin(queue->ground, x, y);
@@ -109,7 +118,8 @@ static void tc_face_candidate(void *user, uint32_t i, unsigned lanes) {
     waiting->doubtful |= reached & ~tc_bits(tc_or(sure, tc_and(surely_left, surely_right)));
 #endif
     reached &= ~tc_bits(tc_and(left, right));
-    if (reached) tc_face_reached(queue, waiting, i, reached);
+    if (reached)
+      tc_face_reached(queue, waiting, i, reached);
   }
 }
 
@@ -124,14 +134,18 @@ static bool tc_queue_trace(TcQueue *queue) {
   for (int j = 0; j < queue->count; ++j) {
     lanes |= queue->waiting[j].lanes << j * TC_LANES;
     queue->waiting[j].doubtful = 0;
-    for (int l = 0; l < TC_LANES; ++l) queue->waiting[j].hits[l].count = 0;
+    for (int l = 0; l < TC_LANES; ++l)
+      queue->waiting[j].hits[l].count = 0;
   }
-  if (!lanes || !shell->embree) return true;
+  if (!lanes || !shell->embree)
+    return true;
   TcPacketCandidateFunction *candidate = tc_face_candidate;
 #if TC_LANES == 1
-  if (!shell->faces) candidate = tc_cell_candidate;
+  if (!shell->faces)
+    candidate = tc_cell_candidate;
 #endif
-  tc_embree_query_packet(shell->embree, TC_QUEUE_RAYS, lanes, queue->from_center[0], queue->direction[0], candidate, queue);
+  tc_embree_query_packet(shell->embree, TC_QUEUE_RAYS, lanes, queue->from_center[0], queue->direction[0], candidate,
+                         queue);
   bool ok = true;
   for (int j = 0; j < queue->count; ++j) {
     for (int l = 0; l < TC_LANES; ++l) {

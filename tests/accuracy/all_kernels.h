@@ -14,10 +14,10 @@ static const struct {
   TetcastIsa isa;
   const TcIsaKernels *kernels;
 } all_kernels[] = {
-  {TETCAST_ISA_SCALAR, &tc_kernels_one},
+    {TETCAST_ISA_SCALAR, &tc_kernels_one},
 #ifdef TC_HAVE_X86
-  {TETCAST_ISA_AVX2, &tc_kernels_avx2},
-  {TETCAST_ISA_AVX512, &tc_kernels_avx512},
+    {TETCAST_ISA_AVX2, &tc_kernels_avx2},
+    {TETCAST_ISA_AVX512, &tc_kernels_avx512},
 #endif
 };
 enum { ALL_KERNELS = sizeof all_kernels / sizeof *all_kernels };
@@ -35,8 +35,8 @@ typedef struct KernelRow {
 
 static const KernelRow kernel_rows[] = {
 #define KERNEL(name, gatherer, features) {#name, #gatherer, (features)},
-#define KERNEL_DOUBLE KERNEL
-#define KERNEL_ONE KERNEL
+#define KERNEL_DOUBLE                    KERNEL
+#define KERNEL_ONE                       KERNEL
 #include "render/kernels.def"
 #undef KERNEL
 #undef KERNEL_DOUBLE
@@ -63,7 +63,8 @@ static inline Count count_of(TetcastContext *context, TcWorker *worker) {
 }
 
 /* Clears sums and has the kernel add those of any rays. */
-static inline Count cast_all(TetcastContext *context, int kernel, const TcJob *job, const TcLine *lines, int64_t count, double *sums) {
+static inline Count cast_all(TetcastContext *context, int kernel, const TcJob *job, const TcLine *lines, int64_t count,
+                             double *sums) {
   const TcIsaKernels *kernels = all_kernels[kernel].kernels;
   TcWorker worker;
   memset(sums, 0, (size_t)(count * job->sums) * sizeof *sums);
@@ -93,10 +94,12 @@ static inline Count render_all(TetcastContext *context, int kernel, const TcJob 
   return count_of(context, &worker);
 }
 
-/* Projects the volume's vertices for the job's view, for kernels in double precision. False: that is not to be done for this view. */
+/* Projects the volume's vertices for the job's view, for kernels in double precision. False: that is not to be done for
+ * this view. */
 static inline bool project_all(TcJob *job, TcScreen *screen) {
   const TetcastVolume *volume = job->shell->volume;
-  if (!tc_screen_setup(volume, &job->view, job->width, job->height, screen)) return false;
+  if (!tc_screen_setup(volume, &job->view, job->width, job->height, screen))
+    return false;
   screen->vertices = malloc(((size_t)volume->vertex_count + 1) * 4 * sizeof(double));
   tc_kernels_one.project(job, screen, 0, volume->vertex_count);
   job->screen = screen;
@@ -108,7 +111,8 @@ static inline void resolve(TcJob *job) {
   const TetcastVolume *volume = job->shell->volume;
   const double values = job->values ? job->values->largest : 0;
   double away2 = 0;
-  for (int k = 0; k < 3; ++k) away2 += pow(volume->center[k] - job->view.eye[k], 2);
+  for (int k = 0; k < 3; ++k)
+    away2 += pow(volume->center[k] - job->view.eye[k], 2);
   job->resolution = job->screen ? tc_screen_resolution(volume, job->screen, false, job->width, job->height, values)
                                 : tc_ray_resolution(volume, sqrt(away2), values);
 }

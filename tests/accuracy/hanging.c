@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Vertices that hang in a larger cell's face: one face of a hexahedron against four. A linear field must give its analytic integral there,
- * in every pixel: what is lost in a gap, or counted twice, shows as optical depth. */
+/* Vertices that hang in a larger cell's face: one face of a hexahedron against four. A linear field must give its
+ * analytic integral there, in every pixel: what is lost in a gap, or counted twice, shows as optical depth. */
 #include "support.h"
 
 enum { W = 120, H = 90, POINTS = 4 + 9 + 9, CELLS = 5 };
 
-static void rotate(double v[3]) { /* two plane rotations, and off the origin: what was in a plane is so but for rounding */
+static void
+rotate(double v[3]) { /* two plane rotations, and off the origin: what was in a plane is so but for rounding */
   const double c = cos(0.7), s = sin(0.7), d = cos(1.9), e = sin(1.9);
   const double x = c * v[0] - s * v[1], y = s * v[0] + c * v[1], z = v[2];
   v[0] = x + 0.3;
@@ -21,21 +22,26 @@ static void rotate_back(double v[3], bool point) {
   v[2] = -e * q + d * r;
 }
 
-static double field_at(const double *p) { return 3 + 0.5 * p[0] - 0.75 * p[1] + 0.25 * p[2]; }
+static double field_at(const double *p) {
+  return 3 + 0.5 * p[0] - 0.75 * p[1] + 0.25 * p[2];
+}
 
 /* A cube, and four bars beside it that meet in the middle of its face. */
 static TetcastCut *cut_cells(Fixture *fixture, bool single, double p[POINTS][3]) {
   int64_t cells[CELLS][8] = {{0, 4, 6, 1, 2, 10, 12, 3}}; /* x = 0: y fastest, then z; x = 1 and 2: 3 × 3 */
   int count = 0;
-  for (int i = 0; i < 4; ++i, ++count) memcpy(p[count], (double[3]){0, i % 2, i / 2}, sizeof p[0]);
-  for (int i = 0; i < 18; ++i, ++count) memcpy(p[count], (double[3]){1 + i / 9, i % 3 / 2.0, i % 9 / 3 / 2.0}, sizeof p[0]);
+  for (int i = 0; i < 4; ++i, ++count)
+    memcpy(p[count], (double[3]){0, i % 2, i / 2}, sizeof p[0]);
+  for (int i = 0; i < 18; ++i, ++count)
+    memcpy(p[count], (double[3]){1 + i / 9, i % 3 / 2.0, i % 9 / 3 / 2.0}, sizeof p[0]);
   for (int i = 0; i < 4; ++i) {
     const int64_t a = 4 + i % 2 + 3 * (i / 2), b = a + 9;
     memcpy(cells[i + 1], (int64_t[8]){a, b, b + 1, a + 1, a + 3, b + 3, b + 4, a + 4}, sizeof cells[0]);
   }
   for (int i = 0; i < POINTS; ++i) {
     rotate(p[i]);
-    for (int k = 0; single && k < 3; ++k) p[i][k] = (double)(float)p[i][k];
+    for (int k = 0; single && k < 3; ++k)
+      p[i][k] = (double)(float)p[i][k];
   }
   TetcastCellsDesc desc = tetcast_cells_desc_default();
   desc.vertices = (TetcastArray){p, TETCAST_TYPE_FLOAT64, POINTS, 0};
@@ -48,7 +54,8 @@ static TetcastCut *cut_cells(Fixture *fixture, bool single, double p[POINTS][3])
 static Body body_with(Fixture *fixture, TetcastTraversal traversal, bool single) {
   double p[POINTS][3], values[POINTS];
   TetcastCut *cut = cut_cells(fixture, single, p);
-  for (int i = 0; i < POINTS; ++i) values[i] = field_at(p[i]);
+  for (int i = 0; i < POINTS; ++i)
+    values[i] = field_at(p[i]);
   TetcastMeshDesc desc = tetcast_mesh_desc_default();
   desc.vertices = (TetcastArray){p, TETCAST_TYPE_FLOAT64, POINTS, 0};
   desc.tetrahedra = tetcast_cut_tetrahedra(cut);
@@ -85,7 +92,8 @@ static double depth_of(const double eye[3], const double direction[3]) {
     enter = fmax(enter, fmin(a, b));
     leave = fmin(leave, fmax(a, b));
   }
-  if (leave <= enter) return 0;
+  if (leave <= enter)
+    return 0;
   double middle[3], norm = 0;
   for (int k = 0; k < 3; ++k) {
     middle[k] = eye[k] + (enter + leave) / 2 * direction[k];
@@ -95,17 +103,20 @@ static double depth_of(const double eye[3], const double direction[3]) {
 }
 
 static void cross(const double a[3], const double b[3], double c[3]) {
-  for (int k = 0; k < 3; ++k) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+  for (int k = 0; k < 3; ++k)
+    c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
 /* The largest difference to what is expected. */
 static double largest_error(const double *pixels, const TetcastCamera *camera) {
   double forward[3], right[3], up[3], lengths[3] = {0, 0, 0}, largest = 0;
   int seen = 0;
-  for (int k = 0; k < 3; ++k) forward[k] = camera->target[k] - camera->eye[k];
+  for (int k = 0; k < 3; ++k)
+    forward[k] = camera->target[k] - camera->eye[k];
   cross(forward, camera->up, right);
   cross(right, forward, up);
-  for (int k = 0; k < 3; ++k) lengths[0] += forward[k] * forward[k], lengths[1] += right[k] * right[k], lengths[2] += up[k] * up[k];
+  for (int k = 0; k < 3; ++k)
+    lengths[0] += forward[k] * forward[k], lengths[1] += right[k] * right[k], lengths[2] += up[k] * up[k];
   for (int i = 0; i < W * H; ++i) {
     const double x = (2 * (i % W + 0.5) / W - 1) * W / H, y = 1 - 2 * (i / W + 0.5) / H;
     const bool flat = camera->projection == TETCAST_ORTHOGRAPHIC;
@@ -118,7 +129,8 @@ static double largest_error(const double *pixels, const TetcastCamera *camera) {
     }
     const double alpha = -expm1(-depth_of(eye, direction));
     seen += alpha > 0.5;
-    for (int c = 0; c < 4; ++c) largest = fmax(largest, fabs(pixels[4 * i + c] - alpha));
+    for (int c = 0; c < 4; ++c)
+      largest = fmax(largest, fabs(pixels[4 * i + c] - alpha));
   }
   assert_true(seen > W * H / 20);
   return largest;
@@ -134,8 +146,10 @@ static void test_pictures(void **state) {
       Body body = body_with(&fixture, traversal ? TETCAST_TRAVERSAL_FACES : TETCAST_TRAVERSAL_SHELL, single);
       for (int view = 0; view < 12; ++view) {
         double middle[3] = {1, 0.5, 0.5}, eye[3] = {1 + 4 * cos(view), 0.5 + 4 * sin(view), 0.5 + 2 * sin(3.0 * view)};
-        if (view == 10) memcpy(eye, (double[3]){1, 5, 0.5}, sizeof eye); /* along the face between */
-        if (view == 11) memcpy(eye, (double[3]){0.9, 0.4, 0.3}, sizeof eye); /* within the cube */
+        if (view == 10)
+          memcpy(eye, (double[3]){1, 5, 0.5}, sizeof eye); /* along the face between */
+        if (view == 11)
+          memcpy(eye, (double[3]){0.9, 0.4, 0.3}, sizeof eye); /* within the cube */
         rotate(middle);
         rotate(eye);
         TetcastCamera camera = camera_of(eye[0], eye[1], eye[2], middle[0], middle[1], middle[2]);
@@ -143,7 +157,8 @@ static void test_pictures(void **state) {
         camera.height = 3;
         double *pixels = picture(fixture.context, &body, transfer, &camera, W, H, NULL);
         const double error = largest_error(pixels, &camera);
-        if (!(error <= (single ? 1e-5 : 1e-13))) fail_msg("traversal %d, view %d, single %d: off by %g", traversal, view, single, error);
+        if (!(error <= (single ? 1e-5 : 1e-13)))
+          fail_msg("traversal %d, view %d, single %d: off by %g", traversal, view, single, error);
         free(pixels);
       }
       body_destroy(&body);

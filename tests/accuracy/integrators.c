@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Observed orders of convergence of the integrators to compare with, against the exact one; on a smooth profile and at knots. (Etiene
- * et al., Verifying volume rendering using discretization error analysis, 2014.) Prints a table. */
+/* Observed orders of convergence of the integrators to compare with, against the exact one; on a smooth profile and at
+ * knots. (Etiene et al., Verifying volume rendering using discretization error analysis, 2014.) Prints a table. */
 #include "support.h"
 
 #include "optics/sampled.h"
@@ -26,9 +26,12 @@ static TetcastTransferFunction *profile(TetcastContext *context, int kind) {
   static const double smooth[2][2] = {{0, 0.5}, {1, 4}}, kink[3][2] = {{0, 0.5}, {0.5, 6}, {1, 0.5}},
                       step[4][2] = {{0, 0.5}, {0.5, 0.5}, {0.5, 6}, {1, 6}};
   switch (kind) {
-  case SMOOTH: return transfer_with(context, color, 2, smooth, 2);
-  case KINK: return transfer_with(context, color, 2, kink, 3);
-  default: return transfer_with(context, color, 2, step, 4);
+  case SMOOTH:
+    return transfer_with(context, color, 2, smooth, 2);
+  case KINK:
+    return transfer_with(context, color, 2, kink, 3);
+  default:
+    return transfer_with(context, color, 2, step, 4);
   }
 }
 
@@ -51,7 +54,8 @@ static double error_of(TetcastContext *context, int kind, TetcastIntegrator inte
     double a[4], b[4];
     plain_end(&exact, a);
     tc_light_end(&sampled, b);
-    for (int k = 0; k < 4; ++k) worst = fmax(worst, fabs(a[k] - b[k]));
+    for (int k = 0; k < 4; ++k)
+      worst = fmax(worst, fabs(a[k] - b[k]));
   }
   tc_sampler_destroy(sampler);
   tetcast_transfer_function_destroy(&transfer);
@@ -61,17 +65,20 @@ static double error_of(TetcastContext *context, int kind, TetcastIntegrator inte
 static void observed_orders(void **state) {
   (void)state;
   static const char *const kinds[] = {"smooth", "kink", "step"};
-  /* `refine` samples per cell, or cells; coarse to fine by a factor of 8. Orders at knots: an error of one cell's part of the path, whose
-   * size is h² at a kink and h at a step, whatever the rule. */
+  /* `refine` samples per cell, or cells; coarse to fine by a factor of 8. Orders at knots: an error of one cell's part
+   * of the path, whose size is h² at a kink and h at a step, whatever the rule. */
   static const struct {
     const char *name;
     TetcastIntegrator integrator;
     int n, coarse; /* coarse: samples (n = 0), else cells */
     double order[3];
   } cases[] = {
-    {"midpoint", TETCAST_INTEGRATOR_MIDPOINT, 0, 16, {2, 2, 1}},   {"trapezoid", TETCAST_INTEGRATOR_TRAPEZOID, 0, 16, {2, 2, 1}},
-    {"table", TETCAST_INTEGRATOR_TABLE, 0, 16, {2, 2, 2}},         {"gauss:1", TETCAST_INTEGRATOR_GAUSS, 1, 16, {2, 2, 1}},
-    {"gauss:2", TETCAST_INTEGRATOR_GAUSS, 2, 4, {4, 2, 1}},        {"gauss:3", TETCAST_INTEGRATOR_GAUSS, 3, 2, {6, 2, 1}},
+      {"midpoint", TETCAST_INTEGRATOR_MIDPOINT, 0, 16, {2, 2, 1}},
+      {"trapezoid", TETCAST_INTEGRATOR_TRAPEZOID, 0, 16, {2, 2, 1}},
+      {"table", TETCAST_INTEGRATOR_TABLE, 0, 16, {2, 2, 2}},
+      {"gauss:1", TETCAST_INTEGRATOR_GAUSS, 1, 16, {2, 2, 1}},
+      {"gauss:2", TETCAST_INTEGRATOR_GAUSS, 2, 4, {4, 2, 1}},
+      {"gauss:3", TETCAST_INTEGRATOR_GAUSS, 3, 2, {6, 2, 1}},
   };
   Fixture fixture;
   assert_int_equal(fixture_begin(&fixture, 1, 0), TETCAST_OK);
@@ -80,8 +87,10 @@ static void observed_orders(void **state) {
     for (int kind = 0; kind < 3; ++kind) {
       const bool samples = cases[i].n == 0;
       const int coarse = kind == SMOOTH ? cases[i].coarse : 24, fine = 8 * coarse; /* high orders reach rounding soon */
-      const double e0 = error_of(fixture.context, kind, cases[i].integrator, samples ? coarse : cases[i].n, samples ? 1 : coarse);
-      const double e1 = error_of(fixture.context, kind, cases[i].integrator, samples ? fine : cases[i].n, samples ? 1 : fine);
+      const double e0 =
+          error_of(fixture.context, kind, cases[i].integrator, samples ? coarse : cases[i].n, samples ? 1 : coarse);
+      const double e1 =
+          error_of(fixture.context, kind, cases[i].integrator, samples ? fine : cases[i].n, samples ? 1 : fine);
       const double order = log(e0 / e1) / log(8), expected = cases[i].order[kind];
       printf("%-10s %-7s %10.2e %10.2e %6.2f %8.0f\n", cases[i].name, kinds[kind], e0, e1, order, expected);
       assert_true(e1 > 1e-15); /* still error of the method */
@@ -91,7 +100,8 @@ static void observed_orders(void **state) {
   fixture_end(&fixture);
 }
 
-/* In whole pictures: from the library, every integrator comes near the exact picture as n grows, and stays in [0, 1]. */
+/* In whole pictures: from the library, every integrator comes near the exact picture as n grows, and stays in [0, 1].
+ */
 static void pictures_converge(void **state) {
   (void)state;
   Fixture fixture;

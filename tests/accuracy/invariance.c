@@ -19,24 +19,28 @@ static double *render(const Cube *cube, const TetcastCamera *camera, double exti
   return pixels;
 }
 
-static const TetcastCamera oblique = {.eye = {2.125, 1.75, 3.375}, .target = {0.5, 0.5, 0.5}, .up = {0, 1, 0}, .fovy = 30};
+static const TetcastCamera oblique = {
+    .eye = {2.125, 1.75, 3.375}, .target = {0.5, 0.5, 0.5}, .up = {0, 1, 0}, .fovy = 30};
 
 /* A cube whose coordinates have few bits, so that moving it by 2³⁰ is exact. */
 static Cube dyadic_cube(void) {
   Cube cube = cube_create(5, 0.5);
-  for (int64_t i = 0; i < 3 * cube.vertex_count; ++i) cube.vertices[i] = round(cube.vertices[i] * 0x1p20) * 0x1p-20;
+  for (int64_t i = 0; i < 3 * cube.vertex_count; ++i)
+    cube.vertices[i] = round(cube.vertices[i] * 0x1p20) * 0x1p-20;
   return cube;
 }
 
 static void move(Cube *cube, TetcastCamera *camera, const double by[3]) {
-  for (int64_t i = 0; i < 3 * cube->vertex_count; ++i) cube->vertices[i] += by[i % 3];
+  for (int64_t i = 0; i < 3 * cube->vertex_count; ++i)
+    cube->vertices[i] += by[i % 3];
   for (int k = 0; k < 3; ++k) {
     camera->eye[k] += by[k];
     camera->target[k] += by[k];
   }
 }
 
-/* Where the input can be moved without rounding, the picture stays to rounding: vertex − origin is formed without loss. */
+/* Where the input can be moved without rounding, the picture stays to rounding: vertex − origin is formed without loss.
+ */
 static void exact_translation(void **state) {
   (void)state;
   for (int orthographic = 0; orthographic < 2; ++orthographic) {
@@ -60,10 +64,10 @@ static void exact_translation(void **state) {
   }
 }
 
-/* By 1e6 and 1e9 with rounding of the input: each coordinate moves by up to δ = ½ ulp. An entry or crossing then moves along the ray by
- * δ √3 (1 + cot of the angle to the face), a value by its gradient (≤ 3 / size here) times that, and colour and opacity by at most
- * the change of depth, Δ(κh) ≤ κ_max Δh + κ' Δs h with κ_max = 30 and |κ'| ≤ 600 here: below 10⁵ δ for all but a few rays that graze
- * an edge. */
+/* By 1e6 and 1e9 with rounding of the input: each coordinate moves by up to δ = ½ ulp. An entry or crossing then moves
+ * along the ray by δ √3 (1 + cot of the angle to the face), a value by its gradient (≤ 3 / size here) times that, and
+ * colour and opacity by at most the change of depth, Δ(κh) ≤ κ_max Δh + κ' Δs h with κ_max = 30 and |κ'| ≤ 600 here:
+ * below 10⁵ δ for all but a few rays that graze an edge. */
 static void rounded_translation(void **state) {
   (void)state;
   Cube cube = cube_create(5, 0.5);
@@ -84,8 +88,8 @@ static void rounded_translation(void **state) {
   cube_destroy(&cube);
 }
 
-/* Lengths by 1e±30, extinction inversely: every number of the input is rounded once, relative 2⁻⁵³, so the bound is that of rounding,
- * times the steepness of the transfer function (600 per unit of the field, here). */
+/* Lengths by 1e±30, extinction inversely: every number of the input is rounded once, relative 2⁻⁵³, so the bound is
+ * that of rounding, times the steepness of the transfer function (600 per unit of the field, here). */
 static void scaling(void **state) {
   (void)state;
   Cube cube = cube_create(5, 0.5);
@@ -94,7 +98,8 @@ static void scaling(void **state) {
   for (int i = 0; i < 4; ++i) {
     Cube scaled = cube_create(5, 0.5);
     TetcastCamera camera = oblique;
-    for (int64_t j = 0; j < 3 * scaled.vertex_count; ++j) scaled.vertices[j] *= factors[i];
+    for (int64_t j = 0; j < 3 * scaled.vertex_count; ++j)
+      scaled.vertices[j] *= factors[i];
     for (int k = 0; k < 3; ++k) {
       camera.eye[k] *= factors[i];
       camera.target[k] *= factors[i];
@@ -120,7 +125,8 @@ static void rotation(void **state) {
   (void)state;
   Cube cube = cube_create(5, 0.5), turned = cube_create(5, 0.5);
   TetcastCamera camera = oblique;
-  for (int64_t i = 0; i < turned.vertex_count; ++i) rotate(&turned.vertices[3 * i]);
+  for (int64_t i = 0; i < turned.vertex_count; ++i)
+    rotate(&turned.vertices[3 * i]);
   rotate(camera.eye), rotate(camera.target), rotate(camera.up);
   double *a = render(&cube, &oblique, 1), *b = render(&turned, &camera, 1);
   assert_true(largest_difference(a, b, VALUES) < 1e-12);
@@ -128,7 +134,8 @@ static void rotation(void **state) {
   cube_destroy(&cube), cube_destroy(&turned);
 }
 
-/* A linear field is the same on any mesh: coarse, fine, jittered; also seen from inside, where the first cell is cut at the eye. */
+/* A linear field is the same on any mesh: coarse, fine, jittered; also seen from inside, where the first cell is cut at
+ * the eye. */
 static void refinement(void **state) {
   (void)state;
   const TetcastCamera inside = {.eye = {0.41, 0.37, 0.83}, .target = {0.9, 0.6, 0.1}, .up = {0, 1, 0}, .fovy = 70};
@@ -142,7 +149,8 @@ static void refinement(void **state) {
     }
     for (int k = 0; k < 2; ++k) {
       double *pixels = render(&cube, k ? &inside : &oblique, 1);
-      if (!first[k]) first[k] = pixels;
+      if (!first[k])
+        first[k] = pixels;
       else {
         assert_true(largest_difference(first[k], pixels, VALUES) < 1e-12);
         free(pixels);
@@ -153,7 +161,8 @@ static void refinement(void **state) {
   free(first[0]), free(first[1]);
 }
 
-/* The same rays from the other side: the same transmittance. Orthographic, so that pixel (x, y) has its partner at (W − 1 − x, y). */
+/* The same rays from the other side: the same transmittance. Orthographic, so that pixel (x, y) has its partner at (W −
+ * 1 − x, y). */
 static void reversal(void **state) {
   (void)state;
   Cube cube = cube_create(5, 0.5);
@@ -161,7 +170,8 @@ static void reversal(void **state) {
   front.projection = TETCAST_ORTHOGRAPHIC;
   front.height = 1.7;
   back = front;
-  for (int k = 0; k < 3; ++k) back.eye[k] = 2 * front.target[k] - front.eye[k];
+  for (int k = 0; k < 3; ++k)
+    back.eye[k] = 2 * front.target[k] - front.eye[k];
   double *a = render(&cube, &front, 0.2), *b = render(&cube, &back, 0.2);
   for (int y = 0; y < H; ++y) {
     for (int x = 0; x < W; ++x) {
@@ -184,7 +194,8 @@ static void splitting(void **state) {
   parts.vertex_count = 2 * n;
   for (int64_t i = 0; i < parts.cell_count; ++i) {
     int64_t *cell = &parts.cells[4 * (parts.cell_count - 1 - i)];
-    for (int k = 0; k < 4; ++k) cell[k] = whole.cells[4 * i + k] + (i * 7 % 13 < 6 ? n : 0);
+    for (int k = 0; k < 4; ++k)
+      cell[k] = whole.cells[4 * i + k] + (i * 7 % 13 < 6 ? n : 0);
   }
   double *a = render(&whole, &oblique, 1), *b = render(&parts, &oblique, 1);
   assert_true(largest_difference(a, b, VALUES) < 1e-12);
@@ -229,9 +240,10 @@ static void opacity_is_extinction(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(exact_translation), cmocka_unit_test(rounded_translation), cmocka_unit_test(scaling),
-    cmocka_unit_test(rotation),          cmocka_unit_test(refinement),          cmocka_unit_test(reversal),
-    cmocka_unit_test(splitting),         cmocka_unit_test(opacity_is_extinction),
+      cmocka_unit_test(exact_translation), cmocka_unit_test(rounded_translation),
+      cmocka_unit_test(scaling),           cmocka_unit_test(rotation),
+      cmocka_unit_test(refinement),        cmocka_unit_test(reversal),
+      cmocka_unit_test(splitting),         cmocka_unit_test(opacity_is_extinction),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,28 +1,46 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* All kernels give what the plain way gives (plain.h): random transfer functions and blend modes on fields of points, cells and corners, and
- * coefficients in groups, in ray space and on the screen, stored in single and in double precision, with NaN, from outside, inside and in parallel, pictures
- * that are no multiple of a packet, both traversals. Prints how far they are apart. */
+/* All kernels give what the plain way gives (plain.h): random transfer functions and blend modes on fields of points,
+ * cells and corners, and coefficients in groups, in ray space and on the screen, stored in single and in double
+ * precision, with NaN, from outside, inside and in parallel, pictures that are no multiple of a packet, both
+ * traversals. Prints how far they are apart. */
 #include "all_kernels.h"
 
-enum { WIDTH = 37, HEIGHT = 23, PIXELS = WIDTH * HEIGHT, SCENES = 160, GROUP_SCENES = 60, VALUE_SCENES = 60, MOST_GROUPS = 21 };
+enum {
+  WIDTH = 37,
+  HEIGHT = 23,
+  PIXELS = WIDTH * HEIGHT,
+  SCENES = 160,
+  GROUP_SCENES = 60,
+  VALUE_SCENES = 60,
+  MOST_GROUPS = 21
+};
 
 /* Some values, some of them NaN, some of them on eighths. */
 static double *random_values(const Cube *cube, int i, TetcastAssociation association, uint64_t *seed, int64_t *count) {
-  *count = association == TETCAST_POINT ? cube->vertex_count : cube->cell_count * (association == TETCAST_CORNER ? 4 : 1);
+  *count =
+      association == TETCAST_POINT ? cube->vertex_count : cube->cell_count * (association == TETCAST_CORNER ? 4 : 1);
   double *values = malloc((size_t)*count * sizeof *values);
   for (int64_t j = 0; j < *count; ++j) {
-    values[j] = association == TETCAST_CELL ? uniform(seed) : association == TETCAST_POINT ? cube->values[j] : cube->values[cube->cells[j]];
-    if (association == TETCAST_CORNER) values[j] += 0.1 * (uniform(seed) - 0.5); /* a jump */
-    if (i % 4 == 3 && uniform(seed) < 0.02) values[j] = NAN;
-    if (i % 5 == 4) values[j] = floor(4 * values[j]) / 4; /* whole cells on a knot */
+    values[j] = association == TETCAST_CELL    ? uniform(seed)
+                : association == TETCAST_POINT ? cube->values[j]
+                                               : cube->values[cube->cells[j]];
+    if (association == TETCAST_CORNER)
+      values[j] += 0.1 * (uniform(seed) - 0.5); /* a jump */
+    if (i % 4 == 3 && uniform(seed) < 0.02)
+      values[j] = NAN;
+    if (i % 5 == 4)
+      values[j] = floor(4 * values[j]) / 4; /* whole cells on a knot */
   }
   return values;
 }
 
-static TetcastField *random_field(TetcastContext *context, const double *values, int64_t count, TetcastAssociation association, bool single) {
-  if (!single) return field_of(context, values, count, association);
+static TetcastField *random_field(TetcastContext *context, const double *values, int64_t count,
+                                  TetcastAssociation association, bool single) {
+  if (!single)
+    return field_of(context, values, count, association);
   float *rounded = malloc((size_t)count * sizeof *rounded);
-  for (int64_t i = 0; i < count; ++i) rounded[i] = (float)values[i];
+  for (int64_t i = 0; i < count; ++i)
+    rounded[i] = (float)values[i];
   TetcastFieldDesc desc = tetcast_field_desc_default();
   desc.values = (TetcastArray){rounded, TETCAST_TYPE_FLOAT32, count, 0};
   desc.association = association;
@@ -35,9 +53,10 @@ static TetcastField *random_field(TetcastContext *context, const double *values,
 static TetcastVolume *random_volume(TetcastContext *context, const Cube *cube, int i) {
   TetcastMeshDesc desc = tetcast_mesh_desc_default();
   float *vertices = malloc((size_t)cube->vertex_count * 3 * sizeof *vertices);
-  for (int64_t j = 0; j < 3 * cube->vertex_count; ++j) vertices[j] = (float)cube->vertices[j];
-  desc.vertices = (TetcastArray){i % 2 ? (void *)vertices : (void *)cube->vertices, i % 2 ? TETCAST_TYPE_FLOAT32 : TETCAST_TYPE_FLOAT64,
-                                 cube->vertex_count, 0};
+  for (int64_t j = 0; j < 3 * cube->vertex_count; ++j)
+    vertices[j] = (float)cube->vertices[j];
+  desc.vertices = (TetcastArray){i % 2 ? (void *)vertices : (void *)cube->vertices,
+                                 i % 2 ? TETCAST_TYPE_FLOAT32 : TETCAST_TYPE_FLOAT64, cube->vertex_count, 0};
   desc.tetrahedra = (TetcastArray){cube->cells, TETCAST_TYPE_INT64, cube->cell_count, 0};
   TetcastMesh *mesh = NULL;
   TetcastVolume *volume = NULL;
@@ -58,8 +77,10 @@ static TetcastTransferFunction *dense_transfer(TetcastContext *context, uint64_t
   bool empty = false;
   for (int i = 0; i < KNOTS; ++i) {
     color[i][0] = (i + 0.9 * uniform(seed)) / KNOTS;
-    for (int k = 1; k < 4; ++k) color[i][k] = uniform(seed);
-    if (uniform(seed) < 0.2) empty = !empty;
+    for (int k = 1; k < 4; ++k)
+      color[i][k] = uniform(seed);
+    if (uniform(seed) < 0.2)
+      empty = !empty;
     extinction[i][0] = i % 3 ? color[i][0] : (i + 0.9 * uniform(seed)) / KNOTS;
     extinction[i][1] = empty ? 0 : power(seed, -1, 3);
   }
@@ -74,7 +95,8 @@ static TetcastTransferFunction *dense_transfer(TetcastContext *context, uint64_t
 
 /* Of one colour, with pieces so narrow that slopes need a scale. */
 static TetcastTransferFunction *narrow_transfer(TetcastContext *context) {
-  const double color[4] = {0, 0.5, 0.25, 1}, extinction[4][2] = {{0.2, 0}, {0.5, 3}, {nextafter(0.5, 1), 1e300}, {0.9, 2}};
+  const double color[4] = {0, 0.5, 0.25, 1},
+               extinction[4][2] = {{0.2, 0}, {0.5, 3}, {nextafter(0.5, 1), 1e300}, {0.9, 2}};
   TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
   desc.color = color;
   desc.color_count = 1;
@@ -91,9 +113,11 @@ static TetcastCamera random_camera(int i, uint64_t *seed) {
     camera.eye[k] = i % 4 == 1 ? uniform(seed) : 5 * uniform(seed) - 2; /* some inside */
     camera.target[k] = 0.3 + 0.4 * uniform(seed);
   }
-  if (i % 6 == 0) camera.projection = TETCAST_ORTHOGRAPHIC;
+  if (i % 6 == 0)
+    camera.projection = TETCAST_ORTHOGRAPHIC;
   if (i % 12 == 0) { /* rays within faces, through vertices */
-    for (int k = 0; k < 3; ++k) camera.eye[k] = camera.target[k] = 0.5;
+    for (int k = 0; k < 3; ++k)
+      camera.eye[k] = camera.target[k] = 0.5;
     camera.eye[2] = 4;
   }
   return camera;
@@ -104,7 +128,8 @@ static double worst[2][ALL_KERNELS];
 
 static void worse(const TcJob *job, int kernel, double off) {
   double *largest = &worst[job->screen != NULL][kernel];
-  if (!(off <= *largest)) *largest = off;
+  if (!(off <= *largest))
+    *largest = off;
 }
 
 /* A picture of a scene, prepared for kernels. */
@@ -114,18 +139,21 @@ typedef struct Stage {
   TcScreen screen;
   int samples;      /* of a pixel */
   double *expected; /* the plain way's sums */
-  /* What each pixel may be off by, relative to others: 1, but for means of a field that jumps, which depths of faces move by their error times the jump over
-   * the ray's length in cells. */
+  /* What each pixel may be off by, relative to others: 1, but for means of a field that jumps, which depths of faces
+   * move by their error times the jump over the ray's length in cells. */
   double loose[PIXELS];
   int64_t segments; /* of these */
   bool deep;        /* some of its rays are so deep that kernels need not follow them to their ends */
 } Stage;
 
-static void stage_begin(Stage *stage, TetcastContext *context, const TetcastScene *scene, const TetcastCamera *camera, int samples_x) {
+static void stage_begin(Stage *stage, TetcastContext *context, const TetcastScene *scene, const TetcastCamera *camera,
+                        int samples_x) {
   *stage = (Stage){.context = context, .samples = samples_x};
   stage->job = (TcJob){.width = WIDTH, .height = HEIGHT, .samples_x = samples_x, .samples_y = 1, .to_the_end = true};
-  assert_int_equal(tc_view_create(context, camera, scene->volume, (double)WIDTH / HEIGHT, &stage->job.view), TETCAST_OK);
-  if (!scene->coefficients) assert_int_equal(tc_scene_prepare(scene), TETCAST_OK);
+  assert_int_equal(tc_view_create(context, camera, scene->volume, (double)WIDTH / HEIGHT, &stage->job.view),
+                   TETCAST_OK);
+  if (!scene->coefficients)
+    assert_int_equal(tc_scene_prepare(scene), TETCAST_OK);
   tc_job_of_scene(scene, false, &stage->job);
   stage->expected = malloc((size_t)(PIXELS * stage->job.sums) * sizeof *stage->expected);
 }
@@ -143,7 +171,11 @@ static bool stage_on_screen(Stage *stage) {
 /* The plain way's sums. */
 static void expect(Stage *stage) {
   const TcJob *job = &stage->job;
-  const PlainScene scene = {.shell = job->shell, .values = job->values, .pieces = job->pieces, .coefficients = job->coefficients, .blend = job->blend,
+  const PlainScene scene = {.shell = job->shell,
+                            .values = job->values,
+                            .pieces = job->pieces,
+                            .coefficients = job->coefficients,
+                            .blend = job->blend,
                             .screen = job->screen};
   double *one = calloc((size_t)job->sums, sizeof *one);
   memset(stage->expected, 0, (size_t)(PIXELS * job->sums) * sizeof *stage->expected);
@@ -156,11 +188,13 @@ static void expect(Stage *stage) {
     assert_false(result.lost);
     stage->segments += result.segments;
     stage->deep = stage->deep || (job->pieces && result.depth > 37);
-    if (p % stage->samples == 0) stage->loose[pixel] = 1;
+    if (p % stage->samples == 0)
+      stage->loose[pixel] = 1;
     if (job->blend == TETCAST_BLEND_AVERAGE && job->values->association != TETCAST_POINT && result.met > 0) {
       stage->loose[pixel] = fmax(stage->loose[pixel], (double)(1 / result.met));
     }
-    for (int k = 0; k < job->sums; ++k) stage->expected[pixel * job->sums + k] += one[k];
+    for (int k = 0; k < job->sums; ++k)
+      stage->expected[pixel * job->sums + k] += one[k];
   }
   resolve(&stage->job);
   free(one);
@@ -171,8 +205,10 @@ static double largest_off(const Stage *stage, const double *sums) {
   const int all = stage->job.sums;
   double largest = 0;
   for (int i = 0; i < PIXELS * all; ++i) {
-    const double wanted = stage->expected[i], off = fabs(sums[i] - wanted) / fmax(1, fabs(wanted)) / stage->loose[i / all];
-    if (!(off <= largest)) largest = off;
+    const double wanted = stage->expected[i],
+                 off = fabs(sums[i] - wanted) / fmax(1, fabs(wanted)) / stage->loose[i / all];
+    if (!(off <= largest))
+      largest = off;
   }
   return largest;
 }
@@ -202,20 +238,25 @@ static void check(Stage *stage, double color, double limit, int rows[TC_KERNELS]
   expect(stage);
   for (int row = 0; row < TC_KERNELS; ++row) {
     job->kernel = chosen;
-    if (!row_serves(&kernel_rows[row], job)) continue;
+    if (!row_serves(&kernel_rows[row], job))
+      continue;
     job->kernel = row;
     for (int kernel = 0; kernel < ALL_KERNELS; ++kernel) {
-      if (!kernel_runs(kernel, job->shell->volume)) continue;
+      if (!kernel_runs(kernel, job->shell->volume))
+        continue;
       const Count count = render_all(stage->context, kernel, job, sums);
       assert_int_equal(count.lost, 0);
-      if (stage->deep) assert_true(count.segments <= stage->segments);
-      else assert_int_equal(count.segments, stage->segments); /* the traversal is the same, to the bit */
+      if (stage->deep)
+        assert_true(count.segments <= stage->segments);
+      else
+        assert_int_equal(count.segments, stage->segments); /* the traversal is the same, to the bit */
       double off = largest_off(stage, sums) / color;
       render_samples(stage, kernel, sums);
       off = fmax(off, largest_off(stage, sums) / color);
       off /= stage->samples;
       worse(job, kernel, off);
-      if (!(off <= limit)) fail_msg("%s, row %s: off by %g", all_kernels[kernel].kernels->name, kernel_rows[row].name, off);
+      if (!(off <= limit))
+        fail_msg("%s, row %s: off by %g", all_kernels[kernel].kernels->name, kernel_rows[row].name, off);
       ++rows[row];
     }
   }
@@ -232,8 +273,8 @@ static void print_worst(void) {
   memset(worst, 0, sizeof worst);
 }
 
-/* Kernels round scalars and depths at faces each in its own way. That counts where the transfer function is steep, or the field jumps and what is
- * seen of it is dense. */
+/* Kernels round scalars and depths at faces each in its own way. That counts where the transfer function is steep, or
+ * the field jumps and what is seen of it is dense. */
 static bool is_sharp(const TcPieces *pieces, TetcastAssociation association, double color) {
   double steep = 0, dense = 0;
   for (int64_t i = 0; i <= pieces->count; ++i) {
@@ -252,7 +293,9 @@ static void light_is_that_of_the_plain_way(void **state) {
   Cube cube = cube_create(6, 0.6);
   int screens = 0, rows[TC_KERNELS] = {0};
   for (int i = 0; i < SCENES; ++i) {
-    const TetcastAssociation association = i % 3 == 2 ? TETCAST_CELL : i % 3 == 1 && i % 2 ? TETCAST_CORNER : TETCAST_POINT;
+    const TetcastAssociation association = i % 3 == 2            ? TETCAST_CELL
+                                           : i % 3 == 1 && i % 2 ? TETCAST_CORNER
+                                                                 : TETCAST_POINT;
     int64_t count;
     double *values = random_values(&cube, i, association, &seed, &count), color = 1;
     Body body = {random_volume(context, &cube, i), random_field(context, values, count, association, i / 2 % 2)};
@@ -263,7 +306,8 @@ static void light_is_that_of_the_plain_way(void **state) {
     TetcastScene *scene = scene_of(context, &body, transfer);
     Stage stage;
     stage_begin(&stage, context, scene, &camera, i % 10 == 2 ? 2 : 1);
-    for (int k = 0; k < 3; ++k) color = fmax(color, stage.job.pieces->largest[k]);
+    for (int k = 0; k < 3; ++k)
+      color = fmax(color, stage.job.pieces->largest[k]);
     const double limit = is_sharp(stage.job.pieces, association, color) ? 2e-13 : 1e-14;
     check(&stage, color, limit, rows);
     if (stage_on_screen(&stage)) {
@@ -279,7 +323,8 @@ static void light_is_that_of_the_plain_way(void **state) {
   print_worst();
   assert_true(screens > SCENES / 4);
   for (int row = 0; row < TC_KERNELS; ++row) {
-    if (!strcmp(kernel_rows[row].gatherer, "emission") && !rows[row]) fail_msg("row %s was not tested", kernel_rows[row].name);
+    if (!strcmp(kernel_rows[row].gatherer, "emission") && !rows[row])
+      fail_msg("row %s was not tested", kernel_rows[row].name);
   }
   cube_destroy(&cube);
   fixture_end(&fixture);
@@ -296,7 +341,9 @@ static void values_are_those_of_the_plain_way(void **state) {
   TetcastTransferFunction *transfer = gray_of(context, 0); /* which hides nothing of it */
   int screens = 0, rows[TC_KERNELS] = {0};
   for (int i = 0; i < VALUE_SCENES; ++i) {
-    const TetcastAssociation association = i % 3 == 2 ? TETCAST_CELL : i % 3 == 1 && i % 2 ? TETCAST_CORNER : TETCAST_POINT;
+    const TetcastAssociation association = i % 3 == 2            ? TETCAST_CELL
+                                           : i % 3 == 1 && i % 2 ? TETCAST_CORNER
+                                                                 : TETCAST_POINT;
     int64_t count;
     double *values = random_values(&cube, i, association, &seed, &count);
     Body body = {random_volume(context, &cube, i), random_field(context, values, count, association, i / 2 % 2)};
@@ -337,7 +384,12 @@ static void groups_are_those_of_the_plain_way(void **state) {
   for (int i = 0; i < GROUP_SCENES; ++i) {
     static const int numbers[] = {1, 2, 3, 4, 5, 8, 9, 16, MOST_GROUPS};
     const int groups = numbers[i % 9], kinds = i / 9 % 4;
-    const int counts[2] = {kinds == 1 ? 1 : kinds == 2 && i % 2 ? 0 : groups, kinds == 3 ? 1 : kinds == 2 && !(i % 2) ? 0 : groups};
+    const int counts[2] = {kinds == 1            ? 1
+                           : kinds == 2 && i % 2 ? 0
+                                                 : groups,
+                           kinds == 3               ? 1
+                           : kinds == 2 && !(i % 2) ? 0
+                                                    : groups};
     TetcastField *fields[2][MOST_GROUPS];
     for (int list = 0; list < 2; ++list) {
       for (int g = 0; g < counts[list]; ++g) {
@@ -346,7 +398,8 @@ static void groups_are_those_of_the_plain_way(void **state) {
         double *values = malloc((size_t)count * sizeof *values);
         for (int64_t j = 0; j < count; ++j) {
           values[j] = uniform(&seed) < 0.1 ? 0 : power(&seed, -3, list ? 0 : i % 3);
-          if (i % 4 == 3 && uniform(&seed) < 0.02) values[j] = NAN;
+          if (i % 4 == 3 && uniform(&seed) < 0.02)
+            values[j] = NAN;
         }
         fields[list][g] = random_field(context, values, count, cells ? TETCAST_CELL : TETCAST_POINT, i / 2 % 2);
         free(values);
@@ -373,7 +426,8 @@ static void groups_are_those_of_the_plain_way(void **state) {
     tetcast_scene_destroy(&scene);
     tetcast_volume_destroy(&volume);
     for (int list = 0; list < 2; ++list) {
-      for (int g = 0; g < counts[list]; ++g) tetcast_field_destroy(&fields[list][g]);
+      for (int g = 0; g < counts[list]; ++g)
+        tetcast_field_destroy(&fields[list][g]);
     }
   }
   print_worst();
@@ -388,8 +442,9 @@ static void groups_are_those_of_the_plain_way(void **state) {
 enum { WIDE = 83, HIGH = 61 };
 
 /* The bytes of a picture with all channels that the scene has. */
-static unsigned char *bytes_of(TetcastContext *context, const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
-                               uint32_t channels, size_t *size, TetcastRenderStats *stats) {
+static unsigned char *bytes_of(TetcastContext *context, const TetcastScene *scene, const TetcastCamera *camera,
+                               const TetcastRenderDesc *desc, uint32_t channels, size_t *size,
+                               TetcastRenderStats *stats) {
   TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
   frame_desc.width = WIDE;
   frame_desc.height = HIGH;
@@ -404,7 +459,8 @@ static unsigned char *bytes_of(TetcastContext *context, const TetcastScene *scen
   *size = 4 * number;
   for (int i = 0; tetcast_channel_info(i); ++i) {
     const TetcastChannelInfo *info = tetcast_channel_info(i);
-    if (!(channels & info->channel)) continue;
+    if (!(channels & info->channel))
+      continue;
     const size_t more = number * (info->of_groups ? (size_t)frame_desc.groups : 1);
     memcpy(bytes + *size, tetcast_frame_channel(frame, info->channel), more);
     *size += more;
@@ -445,17 +501,19 @@ static TetcastScene *scene_for_threads(TetcastContext *context, const Cube *cube
     return scene;
   }
   TetcastField *fields[GROUPS];
-  for (int g = 0; g < GROUPS; ++g) fields[g] = field_of(context, cube->values, cube->vertex_count, TETCAST_POINT);
+  for (int g = 0; g < GROUPS; ++g)
+    fields[g] = field_of(context, cube->values, cube->vertex_count, TETCAST_POINT);
   TetcastCoefficientsDesc desc = tetcast_coefficients_desc_default();
   desc.extinction = desc.emission = (const TetcastField *const *)fields;
   desc.extinction_count = desc.emission_count = GROUPS;
   assert_int_equal(tetcast_scene_set_coefficients(scene, &desc), TETCAST_OK);
-  for (int g = 0; g < GROUPS; ++g) tetcast_field_destroy(&fields[g]);
+  for (int g = 0; g < GROUPS; ++g)
+    tetcast_field_destroy(&fields[g]);
   return scene;
 }
 
-/* Pictures by any number of threads have the same bits, by every kernel, exact, within a tolerance, with the integrators that others use, and in a blend
- * mode. */
+/* Pictures by any number of threads have the same bits, by every kernel, exact, within a tolerance, with the
+ * integrators that others use, and in a blend mode. */
 static void threads_change_no_bit(void **state) {
   (void)state;
   Fixture fixture;
@@ -465,23 +523,29 @@ static void threads_change_no_bit(void **state) {
   const TetcastCamera cameras[] = {camera_of(2.1, 1.7, 3.3, 0.5, 0.5, 0.5), camera_of(0.43, 0.52, 0.61, 1, 0.2, 0)};
   int singles = 0;
   for (int i = 0; i < 2 * 4 * 5; ++i) {
-    const int kind = i % 4, way = i / 4 % 5, traversal = i / 20; /* way: exact, exact with bounds and samples, tolerance, sampled, blend mode */
-    if (kind == 3 && way >= 3) continue;
+    const int kind = i % 4, way = i / 4 % 5,
+              traversal = i / 20; /* way: exact, exact with bounds and samples, tolerance, sampled, blend mode */
+    if (kind == 3 && way >= 3)
+      continue;
     TetcastVolume *volume = random_volume(context, &cube, traversal ? 7 : 0);
     TetcastScene *scene = scene_for_threads(context, &cube, volume, kind);
-    if (way == 4) assert_int_equal(tetcast_scene_set_blend(scene, (TetcastBlend)(1 + (kind + traversal) % 4)), TETCAST_OK);
+    if (way == 4)
+      assert_int_equal(tetcast_scene_set_blend(scene, (TetcastBlend)(1 + (kind + traversal) % 4)), TETCAST_OK);
     uint32_t channels = way == 4 ? TETCAST_CHANNEL_VALUE : 0;
     for (int c = 0; tetcast_channel_info(c) && way < 3; ++c) {
       const TetcastChannelInfo *info = tetcast_channel_info(c);
-      if (!info->needs_blend && (info->needs_coefficients ? kind == 3 : way > 0)) channels |= info->channel;
+      if (!info->needs_blend && (info->needs_coefficients ? kind == 3 : way > 0))
+        channels |= info->channel;
     }
     for (int isa = TETCAST_ISA_SCALAR; isa <= TETCAST_ISA_AVX512; ++isa) {
-      if (!tc_cpu_has((TetcastIsa)isa)) continue;
+      if (!tc_cpu_has((TetcastIsa)isa))
+        continue;
       TetcastRenderDesc desc = tetcast_render_desc_default();
       desc.isa = (TetcastIsa)isa;
       desc.samples = way == 1 || way == 4 ? 3 : 1;
       desc.tolerance = way == 2 ? 1e-2 : 0;
-      if (way == 3) desc.integrator = TETCAST_INTEGRATOR_TRAPEZOID, desc.integrator_n = 3;
+      if (way == 3)
+        desc.integrator = TETCAST_INTEGRATOR_TRAPEZOID, desc.integrator_n = 3;
       unsigned char *first = NULL;
       for (int round = 0; round < 3; ++round) {
         static const int threads[] = {1, 2, 5};
@@ -490,22 +554,27 @@ static void threads_change_no_bit(void **state) {
         assert_int_equal(tetcast_context_set_threads(context, threads[round]), TETCAST_OK);
         unsigned char *bytes = bytes_of(context, scene, &cameras[i % 2], &desc, channels, &size, &stats);
         singles += !strcmp(stats.precision, "single");
-        if (first) assert_memory_equal(first, bytes, size);
-        if (first) free(bytes);
-        else first = bytes;
+        if (first)
+          assert_memory_equal(first, bytes, size);
+        if (first)
+          free(bytes);
+        else
+          first = bytes;
       }
       free(first);
     }
     tetcast_scene_destroy(&scene);
     tetcast_volume_destroy(&volume);
   }
-  if (tc_cpu_has(TETCAST_ISA_AVX2)) assert_true(singles > 0);
+  if (tc_cpu_has(TETCAST_ISA_AVX2))
+    assert_true(singles > 0);
   cube_destroy(&cube);
   fixture_end(&fixture);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(light_is_that_of_the_plain_way), cmocka_unit_test(values_are_those_of_the_plain_way),
-                                     cmocka_unit_test(groups_are_those_of_the_plain_way), cmocka_unit_test(threads_change_no_bit)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(light_is_that_of_the_plain_way), cmocka_unit_test(values_are_those_of_the_plain_way),
+      cmocka_unit_test(groups_are_those_of_the_plain_way), cmocka_unit_test(threads_change_no_bit)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

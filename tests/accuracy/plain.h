@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a ray gathers, in the plainest way: one ray at a time, no vectors, no Embree, sums in extended precision. It is what kernels are tested
- * against. It has in common with them the prepared mesh (volume/volume.h), a field's rows, and the integral over one segment (optics/segment.c,
- * optics/transfer.c), which other tests hold to references of their own. */
+/* What a ray gathers, in the plainest way: one ray at a time, no vectors, no Embree, sums in extended precision. It is
+ * what kernels are tested against. It has in common with them the prepared mesh (volume/volume.h), a field's rows, and
+ * the integral over one segment (optics/segment.c, optics/transfer.c), which other tests hold to references of their
+ * own. */
 #ifndef PLAIN_H
 #define PLAIN_H
 
@@ -23,7 +24,8 @@ void plain_add(PlainLight *light, const TcPieces *pieces, double length, double 
 /* Premultiplied red, green, blue, and alpha. */
 void plain_end(const PlainLight *light, double rgba[4]);
 
-/* What is looked at: either pieces and values, or coefficients, or values in a blend mode, or none of them, which gives the length alone. */
+/* What is looked at: either pieces and values, or coefficients, or values in a blend mode, or none of them, which gives
+ * the length alone. */
 typedef struct PlainScene {
   const TcShell *shell;
   const TcRows *values;
@@ -41,8 +43,8 @@ typedef struct PlainRay {
 } PlainRay;
 
 /* The ray of sample i of pixel (x, y); `screen` may be NULL. */
-PlainRay plain_ray(const TcView *view, int64_t width, int64_t height, int samples_x, int samples_y, int64_t x, int64_t y, int i,
-                   const TcScreen *screen);
+PlainRay plain_ray(const TcView *view, int64_t width, int64_t height, int samples_x, int samples_y, int64_t x,
+                   int64_t y, int i, const TcScreen *screen);
 
 typedef struct PlainResult {
   long double length; /* in cells, scaled */
@@ -52,8 +54,9 @@ typedef struct PlainResult {
   bool lost;
 } PlainResult;
 
-/* Writes to `sums` what a kernel gathers for the ray, but bounds on errors, which are left as they are: with pieces red, green, blue, alpha; with
- * coefficients what gather/coefficients.h says; in a blend mode what gather/value.h says; else the length. */
+/* Writes to `sums` what a kernel gathers for the ray, but bounds on errors, which are left as they are: with pieces
+ * red, green, blue, alpha; with coefficients what gather/coefficients.h says; in a blend mode what gather/value.h says;
+ * else the length. */
 PlainResult plain_cast(const PlainScene *scene, const PlainRay *ray, double *sums);
 
 #endif

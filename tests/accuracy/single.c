@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Single precision: the bound holds for random scenes and where it is hardest to keep, along the boundary of a mesh seen edge-on, in a slit, among
- * slivers; and where there is no bound, double precision is used. Prints how much of the bounds is used. */
+/* Single precision: the bound holds for random scenes and where it is hardest to keep, along the boundary of a mesh
+ * seen edge-on, in a slit, among slivers; and where there is no bound, double precision is used. Prints how much of the
+ * bounds is used. */
 #include "support.h"
 
 #include "base/cpu.h"
@@ -12,7 +13,8 @@ typedef struct Look {
   TetcastRenderStats stats;
 } Look;
 
-static void look(TetcastContext *context, const TetcastScene *scene, const TetcastCamera *camera, TetcastIsa isa, double tolerance, Look *look) {
+static void look(TetcastContext *context, const TetcastScene *scene, const TetcastCamera *camera, TetcastIsa isa,
+                 double tolerance, Look *look) {
   TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
   frame_desc.width = WIDTH;
   frame_desc.height = HEIGHT;
@@ -29,27 +31,30 @@ static void look(TetcastContext *context, const TetcastScene *scene, const Tetca
   tetcast_frame_destroy(&frame);
 }
 
-/* What is seen with a tolerance is as near to the exact picture as is said. Returns the kernels that used single precision; *used: the largest
- * share of a bound. */
-static int check(TetcastContext *context, const Body *body, const TetcastTransferFunction *transfer, const TetcastCamera *camera,
-                 double tolerance, double *used) {
+/* What is seen with a tolerance is as near to the exact picture as is said. Returns the kernels that used single
+ * precision; *used: the largest share of a bound. */
+static int check(TetcastContext *context, const Body *body, const TetcastTransferFunction *transfer,
+                 const TetcastCamera *camera, double tolerance, double *used) {
   static Look exact, picture;
   TetcastScene *scene = scene_of(context, body, transfer);
   int single = 0;
   look(context, scene, camera, TETCAST_ISA_AUTO, 0, &exact);
   assert_string_equal(exact.stats.precision, "double");
   for (TetcastIsa isa = TETCAST_ISA_SCALAR; isa <= TETCAST_ISA_AVX512; ++isa) {
-    if (!tc_cpu_has(isa)) continue;
+    if (!tc_cpu_has(isa))
+      continue;
     look(context, scene, camera, isa, tolerance, &picture);
     const bool is_single = strcmp(picture.stats.precision, "single") == 0;
     single += is_single;
-    if (isa < TETCAST_ISA_AVX2) assert_false(is_single);
+    if (isa < TETCAST_ISA_AVX2)
+      assert_false(is_single);
     for (int i = 0; i < PIXELS; ++i) {
       assert_true(picture.error[i] <= tolerance);
       for (int k = 0; k < 4; ++k) {
         const double off = fabs(picture.rgba[4 * i + k] - exact.rgba[4 * i + k]);
         assert_true(off <= picture.error[i] + exact.error[i]);
-        if (used && is_single && picture.error[i] > 0) *used = fmax(*used, off / picture.error[i]);
+        if (used && is_single && picture.error[i] > 0)
+          *used = fmax(*used, off / picture.error[i]);
       }
     }
   }
@@ -57,7 +62,9 @@ static int check(TetcastContext *context, const Body *body, const TetcastTransfe
   return single;
 }
 
-static int kernels(void) { return tc_cpu_has(TETCAST_ISA_AVX512) + tc_cpu_has(TETCAST_ISA_AVX2); }
+static int kernels(void) {
+  return tc_cpu_has(TETCAST_ISA_AVX512) + tc_cpu_has(TETCAST_ISA_AVX2);
+}
 
 /* Continuous, with knots near or on the eighths; now and then of one colour. */
 static TetcastTransferFunction *continuous(TetcastContext *context, uint64_t *seed, double strength, bool on_eighths) {
@@ -66,7 +73,8 @@ static TetcastTransferFunction *continuous(TetcastContext *context, uint64_t *se
   for (int i = 0; i < 8; ++i) {
     color[i][0] = (i + (on_eighths ? 0 : 0.5) * uniform(seed)) / 8;
     extinction[i][0] = i % 2 ? color[i][0] : (i + (on_eighths ? 0 : 0.5) * uniform(seed)) / 8;
-    for (int k = 1; k < 4; ++k) color[i][k] = gray ? 0.25 * k : uniform(seed);
+    for (int k = 1; k < 4; ++k)
+      color[i][k] = gray ? 0.25 * k : uniform(seed);
     extinction[i][1] = uniform(seed) < 0.3 ? 0 : strength * uniform(seed);
   }
   TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
@@ -82,7 +90,8 @@ static TetcastTransferFunction *continuous(TetcastContext *context, uint64_t *se
 static void turn(double p[3]) {
   static const double axis[3][3] = {{0.36, 0.48, -0.8}, {-0.8, 0.6, 0}, {0.48, 0.64, 0.6}};
   double q[3];
-  for (int k = 0; k < 3; ++k) q[k] = axis[k][0] * p[0] + axis[k][1] * p[1] + axis[k][2] * p[2];
+  for (int k = 0; k < 3; ++k)
+    q[k] = axis[k][0] * p[0] + axis[k][1] * p[1] + axis[k][2] * p[2];
   memcpy(p, q, sizeof q);
 }
 
@@ -92,9 +101,11 @@ static TetcastCamera random_camera(int i, uint64_t *seed) {
     camera.eye[k] = i % 5 == 1 ? uniform(seed) : 5 * uniform(seed) - 2; /* some inside */
     camera.target[k] = 0.3 + 0.4 * uniform(seed);
   }
-  if (i % 3 == 0) camera.projection = TETCAST_ORTHOGRAPHIC;
+  if (i % 3 == 0)
+    camera.projection = TETCAST_ORTHOGRAPHIC;
   if (i % 6 == 0) { /* rays within faces, through vertices */
-    for (int k = 0; k < 3; ++k) camera.eye[k] = camera.target[k] = 0.5;
+    for (int k = 0; k < 3; ++k)
+      camera.eye[k] = camera.target[k] = 0.5;
     camera.eye[i / 6 % 3] = 4;
     camera.up[1] = i / 6 % 3 != 1;
     camera.up[2] = i / 6 % 3 == 1;
@@ -112,10 +123,12 @@ static void bounds_hold(void **state) {
   for (int i = 0; i < 60; ++i) {
     Cube cube = cube_create(2 + i % 9, i % 4 ? 0.7 : 0);
     if (i % 10 == 9) { /* a thin plate */
-      for (int64_t j = 0; j < cube.vertex_count; ++j) cube.vertices[3 * j + 2] = 0.5 + 1e-3 * cube.vertices[3 * j + 2];
+      for (int64_t j = 0; j < cube.vertex_count; ++j)
+        cube.vertices[3 * j + 2] = 0.5 + 1e-3 * cube.vertices[3 * j + 2];
     }
     const bool eighths = i % 7 == 3; /* whole cells lie on a knot */
-    for (int64_t j = 0; eighths && j < cube.vertex_count; ++j) cube.values[j] = floor(4 * cube.values[j]) / 4;
+    for (int64_t j = 0; eighths && j < cube.vertex_count; ++j)
+      cube.values[j] = floor(4 * cube.values[j]) / 4;
     Body body = i % 2 ? single_body(fixture.context, &cube, cube.values, cube.vertex_count, TETCAST_POINT)
                       : cube_body(fixture.context, &cube, TETCAST_TRAVERSAL_SHELL);
     TetcastTransferFunction *transfer = continuous(fixture.context, &seed, power(&seed, -3, 2), eighths);
@@ -126,13 +139,15 @@ static void bounds_hold(void **state) {
     cube_destroy(&cube);
   }
   printf("%d of %d pictures in single precision, off by up to %.2g of the bound\n", single, 60 * kernels(), used);
-  if (kernels()) assert_true(single > 30);
+  if (kernels())
+    assert_true(single > 30);
   fixture_end(&fixture);
 }
 
-/* Two cubes turned askew, one a hair above the other, so that they are not connected, with different fields, seen along the faces between them and along their
- * sides, rays a little to either side, exactly along or at an angle at which they enter and leave through these faces: vertices in single precision
- * are not in one plane any more, and depths there are off by much. */
+/* Two cubes turned askew, one a hair above the other, so that they are not connected, with different fields, seen along
+ * the faces between them and along their sides, rays a little to either side, exactly along or at an angle at which
+ * they enter and leave through these faces: vertices in single precision are not in one plane any more, and depths
+ * there are off by much. */
 static void edge_on(void **state) {
   (void)state;
   Fixture fixture;
@@ -160,7 +175,8 @@ static void edge_on(void **state) {
   for (int i = 0; i < VIEWS; ++i) { /* the picture's middle is in the plane */
     static const double tilts[3] = {0, 3e-7, -1e-5};
     const double plane = i / 2 % 3, tilt = tilts[i / 6 % 3], x = 0.37, distance = 3;
-    double eye[3] = {i % 2 ? x : x - distance, plane + tilt * distance, i % 2 ? x - distance : x}, target[3] = {x, plane, x}, up[3] = {0, 1, 0};
+    double eye[3] = {i % 2 ? x : x - distance, plane + tilt * distance, i % 2 ? x - distance : x},
+           target[3] = {x, plane, x}, up[3] = {0, 1, 0};
     turn(eye), turn(target), turn(up);
     TetcastCamera camera = camera_of(eye[0], eye[1], eye[2], target[0], target[1], target[2]);
     memcpy(camera.up, up, sizeof up);
@@ -201,7 +217,8 @@ static void small_in_a_wide_picture(void **state) {
     TetcastCamera camera = random_camera(3, &seed); /* orthographic */
     double middle[3] = {0.3 + 0.4 * uniform(&seed), 0.3 + 0.4 * uniform(&seed), 0.3 + 0.4 * uniform(&seed)};
     turn(middle);
-    for (int k = 0; k < 3; ++k) camera.eye[k] += middle[k] - camera.target[k], camera.target[k] = middle[k];
+    for (int k = 0; k < 3; ++k)
+      camera.eye[k] += middle[k] - camera.target[k], camera.target[k] = middle[k];
     camera.height = 60;
     double alpha[2], error[2];
     for (int single = 0; single < 2; ++single) {
@@ -232,7 +249,8 @@ static const char *precision_of(Fixture *fixture, const Cube *cube, TetcastAssoc
                                 double extinction[3][2], double tolerance) {
   TetcastMesh *mesh = cube_mesh(fixture->context, cube);
   double *cells = malloc((size_t)cube->cell_count * sizeof *cells);
-  for (int64_t i = 0; i < cube->cell_count; ++i) cells[i] = 0.5;
+  for (int64_t i = 0; i < cube->cell_count; ++i)
+    cells[i] = 0.5;
   const bool of_cells = association == TETCAST_CELL;
   Body body = body_of(fixture->context, mesh, TETCAST_TRAVERSAL_SHELL, of_cells ? cells : cube->values,
                       of_cells ? cube->cell_count : cube->vertex_count, association);
@@ -252,8 +270,8 @@ static const char *precision_of(Fixture *fixture, const Cube *cube, TetcastAssoc
   return single ? "single" : "double";
 }
 
-/* Where nothing bounds the error, or not enough. Slivers don't matter: what they do is measured along rays, few of which
- * cross them. */
+/* Where nothing bounds the error, or not enough. Slivers don't matter: what they do is measured along rays, few of
+ * which cross them. */
 static void without_bound(void **state) {
   (void)state;
   enum { PLAIN, STEP, JUMP_OF_COLOR, STEEP, CELLS, NOT_A_NUMBER, OFFSET, SLIVER, FLAT, STRICT, CASES };
@@ -261,17 +279,27 @@ static void without_bound(void **state) {
   assert_int_equal(fixture_begin(&fixture, 2, 0), TETCAST_OK);
   for (int i = 0; i < CASES && kernels(); ++i) {
     Cube cube = cube_create(4, 0.5);
-    double color[3][4] = {{0, 1, 0.5, 0}, {0.5, 0, 1, 0.5}, {1, 0.5, 0, 1}}, extinction[3][2] = {{0, 0}, {0.5, 1}, {1, 2}};
-    if (i == STEP) extinction[0][0] = 0.5; /* from 0 to 1 at once */
-    if (i == JUMP_OF_COLOR) color[0][0] = 0.5;
-    if (i == STEEP) extinction[1][0] = 0.5 - 1e-5, extinction[2][0] = 0.5, extinction[2][1] = 5;
-    if (i == NOT_A_NUMBER) cube.values[62] = NAN;
-    for (int k = 0; i == OFFSET && k < 3; ++k) color[k][0] += 1e5, extinction[k][0] += 1e5;
-    for (int64_t j = 0; i == OFFSET && j < cube.vertex_count; ++j) cube.values[j] += 1e5;
+    double color[3][4] = {{0, 1, 0.5, 0}, {0.5, 0, 1, 0.5}, {1, 0.5, 0, 1}},
+           extinction[3][2] = {{0, 0}, {0.5, 1}, {1, 2}};
+    if (i == STEP)
+      extinction[0][0] = 0.5; /* from 0 to 1 at once */
+    if (i == JUMP_OF_COLOR)
+      color[0][0] = 0.5;
+    if (i == STEEP)
+      extinction[1][0] = 0.5 - 1e-5, extinction[2][0] = 0.5, extinction[2][1] = 5;
+    if (i == NOT_A_NUMBER)
+      cube.values[62] = NAN;
+    for (int k = 0; i == OFFSET && k < 3; ++k)
+      color[k][0] += 1e5, extinction[k][0] += 1e5;
+    for (int64_t j = 0; i == OFFSET && j < cube.vertex_count; ++j)
+      cube.values[j] += 1e5;
     /* Two inner vertices almost, or entirely, in one place. */
-    if (i == SLIVER || i == FLAT) memcpy(&cube.vertices[3 * 62], &cube.vertices[3 * 63], 3 * sizeof(double));
-    if (i == SLIVER) cube.vertices[3 * 62] -= 1e-7;
-    assert_string_equal(precision_of(&fixture, &cube, i == CELLS ? TETCAST_CELL : TETCAST_POINT, color, extinction, i == STRICT ? 1e-6 : 1e-3),
+    if (i == SLIVER || i == FLAT)
+      memcpy(&cube.vertices[3 * 62], &cube.vertices[3 * 63], 3 * sizeof(double));
+    if (i == SLIVER)
+      cube.vertices[3 * 62] -= 1e-7;
+    assert_string_equal(precision_of(&fixture, &cube, i == CELLS ? TETCAST_CELL : TETCAST_POINT, color, extinction,
+                                     i == STRICT ? 1e-6 : 1e-3),
                         i == PLAIN || i == SLIVER || i == FLAT ? "single" : "double");
     cube_destroy(&cube);
   }
@@ -280,7 +308,6 @@ static void without_bound(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(bounds_hold), cmocka_unit_test(edge_on),
-                                     cmocka_unit_test(small_in_a_wide_picture),
-                                     cmocka_unit_test(without_bound)};
+                                     cmocka_unit_test(small_in_a_wide_picture), cmocka_unit_test(without_bound)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Stiff and extreme scenes: one ray down a bar whose field depends on x alone, against the integral in extended precision along the same
- * piecewise linear profile. Prints a table. */
+/* Stiff and extreme scenes: one ray down a bar whose field depends on x alone, against the integral in extended
+ * precision along the same piecewise linear profile. Prints a table. */
 #include "support.h"
 
 #include <float.h>
@@ -9,10 +9,10 @@ enum { MOST = 8 };
 
 typedef struct Scene {
   const char *name;
-  int cells;           /* along the bar */
-  double length;       /* of the bar */
-  double low, high;    /* values at its nodes run between these … */
-  int pattern;         /* … 0: up once, 1: up and down at every node, 2: constant `low`, 3: up, with a NaN node in the middle */
+  int cells;        /* along the bar */
+  double length;    /* of the bar */
+  double low, high; /* values at its nodes run between these … */
+  int pattern; /* … 0: up once, 1: up and down at every node, 2: constant `low`, 3: up, with a NaN node in the middle */
   double color[MOST][4];
   int colors;
   double extinction[MOST][2];
@@ -21,50 +21,168 @@ typedef struct Scene {
 } Scene;
 
 static const Scene scenes[] = {
-  {"extinction 0 next to 1e12 per cell", 10, 1, 0, 1, 0, {{0, 1, 0, 0}, {1, 0, 0, 1}}, 2, {{0.33, 0}, {0.33, 1e13}, {0.66, 1e13}, {0.66, 0}}, 4, 0},
-  {"ramp from 0 to 1e12", 10, 1, 0, 1, 0, {{0, 1, 0, 0}, {1, 0, 0.5, 1}}, 2, {{0.05, 0}, {1, 1e12}}, 2, 0},
-  {"peak of 1e-7 of the range", 10, 1, 0, 1, 0, {{0, 1, 0.2, 0}, {1, 0, 0.4, 1}}, 2, {{0.51, 0}, {0.51000005, 3e7}, {0.5100001, 0}}, 3, 0},
-  {"the same peak crossed 1000 times", 1000, 1, 0, 1, 1, {{0, 1, 0.2, 0}, {1, 0, 0.4, 1}}, 2, {{0.51, 0}, {0.51000005, 3e4}, {0.5100001, 0}}, 3, 0},
-  {"steps", 17, 2, 0, 1, 0, {{0.3, 1, 0, 0}, {0.3, 0, 1, 0}, {0.6, 0.5, 0.5, 1}}, 3, {{0.2, 1}, {0.2, 5}, {0.7, 2}, {0.7, 0.1}}, 4, 0},
-  {"constant field on a step", 5, 1, 0.25, 0.25, 2, {{0.25, 1, 0, 0}, {0.25, 0, 1, 0.5}}, 2, {{0.25, 1}, {0.25, 3}}, 2, 0},
-  {"constant field on a peak", 5, 1, 0.25, 0.25, 2, {{0, 1, 0.25, 0}}, 1, {{0.2, 0}, {0.25, 0.7}, {0.3, 0}}, 3, 0},
-  {"opacity 1", 5, 1, 0, 1, 0, {{0, 1, 0.25, 0}, {1, 0.5, 1, 1}}, 2, {{0, 0}, {0.5, 1}, {1, 1}}, 3, 0.1},
-  {"100,000 cells, soft", 100000, 1, 0, 1, 1, {{0, 1, 0.25, 0}, {1, 0.5, 1, 1}}, 2, {{0.1, 0}, {0.5, 2}, {0.9, 0.5}}, 3, 0},
-  {"100,000 cells, constant", 100000, 1, 0.5, 0.5, 2, {{0, 1, 0.25, 0.125}}, 1, {{0, 0.1}}, 1, 0},
-  {"optical depth 1e-15", 20, 1, 0, 1, 1, {{0, 1, 0.25, 0.5}, {1, 0.5, 1, 1}}, 2, {{0, 2e-15}, {1, 0}}, 2, 0},
-  {"optical depth 1e-290", 20, 1, 0, 1, 1, {{0, 1, 0.25, 0.5}, {1, 0.5, 1, 1}}, 2, {{0, 2e-290}, {1, 0}}, 2, 0},
-  {"optical depth 1e15", 20, 1, 0, 1, 1, {{0, 1, 0.25, 0.5}, {1, 0.5, 1, 1}}, 2, {{0, 2e15}, {1, 1e15}}, 2, 0},
-  {"field of ±1e300", 9, 1, -1e300, 1e300, 1, {{-1e300, 1, 0.25, 0.5}, {1e300, 0.5, 1, 1}}, 2, {{-1e300, 0}, {3e299, 2}, {1e300, 1}}, 3, 0},
-  {"field of 1e-300", 9, 1, 1e-300, 3e-300, 1, {{1e-300, 1, 0.25, 0.5}, {3e-300, 0.5, 1, 1}}, 2, {{1.5e-300, 0}, {2e-300, 2}, {3e-300, 1}}, 3, 0},
-  {"field of denormals", 9, 1, 5e-324, 3e-323, 1, {{5e-324, 1, 0.25, 0.5}, {3e-323, 0.5, 1, 1}}, 2, {{1e-323, 0}, {2e-323, 2}, {3e-323, 1}}, 3, 0},
-  {"bar of 1e-200", 9, 1e-200, 0, 1, 1, {{0, 1, 0.25, 0.5}, {1, 0.5, 1, 1}}, 2, {{0, 0}, {0.5, 2e200}, {1, 1e200}}, 3, 0},
-  {"bar of 1e200", 9, 1e200, 0, 1, 1, {{0, 1, 0.25, 0.5}, {1, 0.5, 1, 1}}, 2, {{0, 0}, {0.5, 2e-200}, {1, 1e-200}}, 3, 0},
-  {"NaN cells", 12, 1, 0, 1, 3, {{0, 1, 0.25, 0.5}, {1, 0.5, 1, 1}}, 2, {{0, 0.5}, {0.5, 2}, {1, 1}}, 3, 0},
+    {"extinction 0 next to 1e12 per cell",
+     10,
+     1,
+     0,
+     1,
+     0,
+     {{0, 1, 0, 0}, {1, 0, 0, 1}},
+     2,
+     {{0.33, 0}, {0.33, 1e13}, {0.66, 1e13}, {0.66, 0}},
+     4,
+     0},
+    {"ramp from 0 to 1e12", 10, 1, 0, 1, 0, {{0, 1, 0, 0}, {1, 0, 0.5, 1}}, 2, {{0.05, 0}, {1, 1e12}}, 2, 0},
+    {"peak of 1e-7 of the range",
+     10,
+     1,
+     0,
+     1,
+     0,
+     {{0, 1, 0.2, 0}, {1, 0, 0.4, 1}},
+     2,
+     {{0.51, 0}, {0.51000005, 3e7}, {0.5100001, 0}},
+     3,
+     0},
+    {"the same peak crossed 1000 times",
+     1000,
+     1,
+     0,
+     1,
+     1,
+     {{0, 1, 0.2, 0}, {1, 0, 0.4, 1}},
+     2,
+     {{0.51, 0}, {0.51000005, 3e4}, {0.5100001, 0}},
+     3,
+     0},
+    {"steps",
+     17,
+     2,
+     0,
+     1,
+     0,
+     {{0.3, 1, 0, 0}, {0.3, 0, 1, 0}, {0.6, 0.5, 0.5, 1}},
+     3,
+     {{0.2, 1}, {0.2, 5}, {0.7, 2}, {0.7, 0.1}},
+     4,
+     0},
+    {"constant field on a step",
+     5,
+     1,
+     0.25,
+     0.25,
+     2,
+     {{0.25, 1, 0, 0}, {0.25, 0, 1, 0.5}},
+     2,
+     {{0.25, 1}, {0.25, 3}},
+     2,
+     0},
+    {"constant field on a peak", 5, 1, 0.25, 0.25, 2, {{0, 1, 0.25, 0}}, 1, {{0.2, 0}, {0.25, 0.7}, {0.3, 0}}, 3, 0},
+    {"opacity 1", 5, 1, 0, 1, 0, {{0, 1, 0.25, 0}, {1, 0.5, 1, 1}}, 2, {{0, 0}, {0.5, 1}, {1, 1}}, 3, 0.1},
+    {"100,000 cells, soft",
+     100000,
+     1,
+     0,
+     1,
+     1,
+     {{0, 1, 0.25, 0}, {1, 0.5, 1, 1}},
+     2,
+     {{0.1, 0}, {0.5, 2}, {0.9, 0.5}},
+     3,
+     0},
+    {"100,000 cells, constant", 100000, 1, 0.5, 0.5, 2, {{0, 1, 0.25, 0.125}}, 1, {{0, 0.1}}, 1, 0},
+    {"optical depth 1e-15", 20, 1, 0, 1, 1, {{0, 1, 0.25, 0.5}, {1, 0.5, 1, 1}}, 2, {{0, 2e-15}, {1, 0}}, 2, 0},
+    {"optical depth 1e-290", 20, 1, 0, 1, 1, {{0, 1, 0.25, 0.5}, {1, 0.5, 1, 1}}, 2, {{0, 2e-290}, {1, 0}}, 2, 0},
+    {"optical depth 1e15", 20, 1, 0, 1, 1, {{0, 1, 0.25, 0.5}, {1, 0.5, 1, 1}}, 2, {{0, 2e15}, {1, 1e15}}, 2, 0},
+    {"field of ±1e300",
+     9,
+     1,
+     -1e300,
+     1e300,
+     1,
+     {{-1e300, 1, 0.25, 0.5}, {1e300, 0.5, 1, 1}},
+     2,
+     {{-1e300, 0}, {3e299, 2}, {1e300, 1}},
+     3,
+     0},
+    {"field of 1e-300",
+     9,
+     1,
+     1e-300,
+     3e-300,
+     1,
+     {{1e-300, 1, 0.25, 0.5}, {3e-300, 0.5, 1, 1}},
+     2,
+     {{1.5e-300, 0}, {2e-300, 2}, {3e-300, 1}},
+     3,
+     0},
+    {"field of denormals",
+     9,
+     1,
+     5e-324,
+     3e-323,
+     1,
+     {{5e-324, 1, 0.25, 0.5}, {3e-323, 0.5, 1, 1}},
+     2,
+     {{1e-323, 0}, {2e-323, 2}, {3e-323, 1}},
+     3,
+     0},
+    {"bar of 1e-200",
+     9,
+     1e-200,
+     0,
+     1,
+     1,
+     {{0, 1, 0.25, 0.5}, {1, 0.5, 1, 1}},
+     2,
+     {{0, 0}, {0.5, 2e200}, {1, 1e200}},
+     3,
+     0},
+    {"bar of 1e200",
+     9,
+     1e200,
+     0,
+     1,
+     1,
+     {{0, 1, 0.25, 0.5}, {1, 0.5, 1, 1}},
+     2,
+     {{0, 0}, {0.5, 2e-200}, {1, 1e-200}},
+     3,
+     0},
+    {"NaN cells", 12, 1, 0, 1, 3, {{0, 1, 0.25, 0.5}, {1, 0.5, 1, 1}}, 2, {{0, 0.5}, {0.5, 2}, {1, 1}}, 3, 0},
 };
 
 static double node_value(const Scene *scene, int i) {
   switch (scene->pattern) {
-  case 0: return scene->low + (scene->high - scene->low) * i / scene->cells;
-  case 1: return i % 2 ? scene->high : scene->low;
-  case 3: return i == scene->cells / 2 ? (double)NAN : scene->low + (scene->high - scene->low) * i / scene->cells;
-  default: return scene->low;
+  case 0:
+    return scene->low + (scene->high - scene->low) * i / scene->cells;
+  case 1:
+    return i % 2 ? scene->high : scene->low;
+  case 3:
+    return i == scene->cells / 2 ? (double)NAN : scene->low + (scene->high - scene->low) * i / scene->cells;
+  default:
+    return scene->low;
   }
 }
 
-static double node_position(const Scene *scene, int i) { return scene->length * i / scene->cells; }
+static double node_position(const Scene *scene, int i) {
+  return scene->length * i / scene->cells;
+}
 
 /* ── the reference ── */
 
 /* A list's two knots around `at`, or one of its ends twice; at a step, the later knot. */
 static void around(const double *knots, int width, int count, long double at, const double **a, const double **b) {
   int i = 0;
-  while (i < count && knots[i * width] <= at) ++i;
+  while (i < count && knots[i * width] <= at)
+    ++i;
   *a = knots + (i > 0 ? i - 1 : 0) * width;
   *b = knots + (i < count ? i : count - 1) * width;
 }
 
 static long double linear(const double *a, const double *b, int k, long double s) {
-  if (a == b || a[0] == b[0]) return b[k];
+  if (a == b || a[0] == b[0])
+    return b[k];
   return a[k] + (b[k] - (long double)a[k]) * ((s - a[0]) / (b[0] - (long double)a[0]));
 }
 
@@ -72,20 +190,24 @@ typedef struct Sum {
   long double color[3], depth;
 } Sum;
 
-/* ∫ over a part with κ and c linear, in steps in which the optical depth and its slope change little; 5 Gauss–Legendre nodes. */
+/* ∫ over a part with κ and c linear, in steps in which the optical depth and its slope change little; 5 Gauss–Legendre
+ * nodes. */
 static void integrate(Sum *sum, long double h, const long double near[4], const long double far[4]) {
-  static const long double node[5] = {-0.906179845938663992797626878299392965L, -0.538469310105683091036314420700208805L, 0,
+  static const long double node[5] = {-0.906179845938663992797626878299392965L,
+                                      -0.538469310105683091036314420700208805L, 0,
                                       0.538469310105683091036314420700208805L, 0.906179845938663992797626878299392965L};
-  static const long double weight[5] = {0.236926885056189087514264040719917363L, 0.478628670499366468041291514835638193L,
-                                        0.568888888888888888888888888888888889L, 0.478628670499366468041291514835638193L,
-                                        0.236926885056189087514264040719917363L};
+  static const long double weight[5] = {
+      0.236926885056189087514264040719917363L, 0.478628670499366468041291514835638193L,
+      0.568888888888888888888888888888888889L, 0.478628670499366468041291514835638193L,
+      0.236926885056189087514264040719917363L};
   const long double a = near[0] * h, b = (far[0] - near[0]) * h, top = fmaxl(fmaxl(near[0], far[0]) * h, 1);
   for (long double u = 0; u < 1 && sum->depth + a * u + b * u * u / 2 < 70;) {
     const long double step = fminl(1 - u, 0.03125L / fmaxl(a + b * u, sqrtl(top)));
     for (int i = 0; i < 5; ++i) {
       const long double v = u + step * (1 + node[i]) / 2;
       const long double f = weight[i] * step / 2 * (a + b * v) * expl(-sum->depth - a * v - b * v * v / 2);
-      for (int k = 0; k < 3; ++k) sum->color[k] += f * (near[k + 1] + (far[k + 1] - near[k + 1]) * v);
+      for (int k = 0; k < 3; ++k)
+        sum->color[k] += f * (near[k + 1] + (far[k + 1] - near[k + 1]) * v);
     }
     u += step;
   }
@@ -93,7 +215,8 @@ static void integrate(Sum *sum, long double h, const long double near[4], const 
 }
 
 static long double extinction_of(const Scene *scene, double value) {
-  if (scene->unit_distance == 0) return value;
+  if (scene->unit_distance == 0)
+    return value;
   return -log1pl(-fminl(value, 1 - 0x1p-53L)) / scene->unit_distance;
 }
 
@@ -106,7 +229,8 @@ static void reference(const Scene *scene, double rgba[4]) {
   Sum sum = {{0, 0, 0}, 0};
   for (int i = 0; i < scene->cells; ++i) {
     const double s0 = node_value(scene, i), s1 = node_value(scene, i + 1);
-    if (isnan(s0) || isnan(s1)) continue;
+    if (isnan(s0) || isnan(s1))
+      continue;
     const long double h = (long double)node_position(scene, i + 1) - node_position(scene, i);
     long double cut[2 * MOST + 2];
     int cuts = 0;
@@ -114,7 +238,8 @@ static void reference(const Scene *scene, double rgba[4]) {
     for (int j = 0; j < scene->colors + scene->extinctions && s0 != s1; ++j) {
       const double knot = j < scene->colors ? scene->color[j][0] : extinction[j - scene->colors][0];
       const long double u = ((long double)knot - s0) / ((long double)s1 - s0);
-      if (u > 0 && u < 1) cut[cuts++] = u;
+      if (u > 0 && u < 1)
+        cut[cuts++] = u;
     }
     cut[cuts++] = 1;
     for (int j = 1; j < cuts; ++j) { /* insertion sort */
@@ -125,7 +250,8 @@ static void reference(const Scene *scene, double rgba[4]) {
       }
     }
     for (int j = 0; j + 1 < cuts; ++j) {
-      if (cut[j] == cut[j + 1]) continue;
+      if (cut[j] == cut[j + 1])
+        continue;
       const long double at = s0 == s1 ? s0 : s0 + ((long double)s1 - s0) * (cut[j] + cut[j + 1]) / 2;
       const double *a, *b, *c, *d;
       around(extinction[0], 2, scene->extinctions, at, &a, &b);
@@ -134,12 +260,14 @@ static void reference(const Scene *scene, double rgba[4]) {
       for (int e = 0; e < 2; ++e) {
         const long double s = s0 + ((long double)s1 - s0) * cut[j + e];
         ends[e][0] = fmaxl(linear(a, b, 1, s), 0);
-        for (int k = 1; k < 4; ++k) ends[e][k] = linear(c, d, k, s);
+        for (int k = 1; k < 4; ++k)
+          ends[e][k] = linear(c, d, k, s);
       }
       integrate(&sum, (cut[j + 1] - cut[j]) * h, ends[0], ends[1]);
     }
   }
-  for (int k = 0; k < 3; ++k) rgba[k] = (double)sum.color[k];
+  for (int k = 0; k < 3; ++k)
+    rgba[k] = (double)sum.color[k];
   rgba[3] = (double)-expm1l(-sum.depth);
 }
 
@@ -189,7 +317,8 @@ static void render(const Scene *scene, TetcastTraversal traversal, double pixels
     static const int64_t step[3] = {4, 1, 2};
     int64_t *cell = &bar.cells[4 * i];
     cell[0] = i / 6 * 4;
-    for (int k = 0; k < 3; ++k) cell[k + 1] = cell[k] + step[order[i % 6][k]];
+    for (int k = 0; k < 3; ++k)
+      cell[k + 1] = cell[k] + step[order[i % 6][k]];
   }
   Body body = cube_body(fixture.context, &bar, traversal);
   TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
@@ -235,7 +364,8 @@ static void extreme_scenes(void **state) {
         }
         /* absolute in [0, 1], relative where everything is thin */
         for (int j = 0; j < PIXELS; j += TOLERANCES) {
-          error[traversal] = fmax(error[traversal], fabs(pixels[j][k] - expected[k]) / fmin(1, fmax(expected[3], DBL_MIN)));
+          error[traversal] =
+              fmax(error[traversal], fabs(pixels[j][k] - expected[k]) / fmin(1, fmax(expected[3], DBL_MIN)));
         }
       }
       worst = fmax(worst, error[traversal]);

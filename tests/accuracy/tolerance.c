@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A tolerance is kept, and so is the bound in the error channel: random transfer functions of all strengths on point and cell fields,
- * against the exact picture. Prints how much of the tolerance is used. */
+/* A tolerance is kept, and so is the bound in the error channel: random transfer functions of all strengths on point
+ * and cell fields, against the exact picture. Prints how much of the tolerance is used. */
 #include "support.h"
 
 enum { SIZE = 24, PIXELS = SIZE * SIZE, SCENES = 150 };
@@ -33,7 +33,8 @@ static void render(TetcastContext *context, const TetcastScene *scene, double to
     }
     picture->error[i] = wide ? ((const double *)error)[i] : (double)((const float *)error)[i];
     largest = fmax(largest, picture->error[i]);
-    if (picture->rgba[4 * i + 3] > 0) assert_true(picture->error[i] > 0);
+    if (picture->rgba[4 * i + 3] > 0)
+      assert_true(picture->error[i] > 0);
   }
   assert_true(largest == stats.error);
   tetcast_frame_destroy(&frame);
@@ -44,7 +45,8 @@ static double largest_color(const TetcastTransferFunction *transfer) {
   const double *color = tetcast_transfer_function_color(transfer, &count);
   double largest = 1;
   for (int64_t i = 0; i < 4 * count; ++i) {
-    if (i % 4 > 0) largest = fmax(largest, color[i]);
+    if (i % 4 > 0)
+      largest = fmax(largest, color[i]);
   }
   return largest;
 }
@@ -54,7 +56,8 @@ static double check(const Picture *exact, const Picture *picture, double toleran
   double worst = 0;
   for (int i = 0; i < PIXELS; ++i) {
     double off = 0;
-    for (int k = 0; k < 4; ++k) off = fmax(off, fabs(picture->rgba[4 * i + k] - exact->rgba[4 * i + k]));
+    for (int k = 0; k < 4; ++k)
+      off = fmax(off, fabs(picture->rgba[4 * i + k] - exact->rgba[4 * i + k]));
     assert_true(off <= picture->error[i] + exact->error[i]);
     worst = fmax(worst, off / tolerance);
   }
@@ -74,7 +77,8 @@ static void tolerances_are_kept(void **state) {
   TetcastMesh *mesh = cube_mesh(fixture.context, &cube);
   TetcastField *fields[2] = {field_of(fixture.context, cube.values, cube.vertex_count, TETCAST_POINT), NULL};
   double *cells = malloc((size_t)cube.cell_count * sizeof *cells);
-  for (int64_t i = 0; i < cube.cell_count; ++i) cells[i] = uniform(&seed);
+  for (int64_t i = 0; i < cube.cell_count; ++i)
+    cells[i] = uniform(&seed);
   fields[1] = field_of(fixture.context, cells, cube.cell_count, TETCAST_CELL);
   Picture *exact = malloc(sizeof *exact), *picture = malloc(sizeof *picture);
   for (int i = 0; i < SCENES; ++i) {
@@ -89,7 +93,8 @@ static void tolerances_are_kept(void **state) {
     for (int j = 0; j < N; ++j) {
       render(fixture.context, scene, tolerances[j], samples, TETCAST_TYPE_FLOAT64, picture);
       used[j] = fmax(used[j], check(exact, picture, tolerances[j]));
-      if (tolerances[j] > 1e-12 * color) assert_true(used[j] <= 1);
+      if (tolerances[j] > 1e-12 * color)
+        assert_true(used[j] <= 1);
     }
     render(fixture.context, scene, 1e-5, samples, TETCAST_TYPE_FLOAT32, picture); /* rounding to float comes on top */
     check(exact, picture, 1e-5 + 6e-8 * color);
@@ -98,11 +103,13 @@ static void tolerances_are_kept(void **state) {
     tetcast_volume_destroy(&body.volume);
   }
   printf("%10s %s\n", "tolerance", "largest share of it that is used");
-  for (int j = 0; j < N; ++j) printf("%10.0e %.3g\n", tolerances[j], used[j]);
+  for (int j = 0; j < N; ++j)
+    printf("%10.0e %.3g\n", tolerances[j], used[j]);
   free(exact);
   free(picture);
   free(cells);
-  for (int i = 0; i < 2; ++i) tetcast_field_destroy(&fields[i]);
+  for (int i = 0; i < 2; ++i)
+    tetcast_field_destroy(&fields[i]);
   tetcast_mesh_destroy(&mesh);
   cube_destroy(&cube);
   fixture_end(&fixture);
@@ -135,7 +142,8 @@ static void what_has_no_bound_is_refused(void **state) {
     desc.integrator = TETCAST_INTEGRATOR_MIDPOINT;
     const TetcastStatus status = tetcast_scene_render(scene, &camera, &desc, frame, &stats);
     assert_int_equal(status, with_channel ? TETCAST_ERROR_ARGUMENT : TETCAST_OK);
-    if (!status) assert_true(isnan(stats.error));
+    if (!status)
+      assert_true(isnan(stats.error));
     desc.tolerance = 1e-3;
     assert_int_equal(tetcast_scene_render(scene, &camera, &desc, frame, &stats), TETCAST_ERROR_ARGUMENT);
     tetcast_frame_destroy(&frame);
@@ -153,6 +161,7 @@ static void what_has_no_bound_is_refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(tolerances_are_kept), cmocka_unit_test(what_has_no_bound_is_refused)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(tolerances_are_kept),
+                                     cmocka_unit_test(what_has_no_bound_is_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* tetcast_bench_body shell|torus CELLS FILE: fills a surface with about CELLS tetrahedra by TetGen and writes what bench_mesh_load()
- * reads. A program of its own because of TetGen's licence and because of the memory that meshing takes. */
+/* tetcast_bench_body shell|torus CELLS FILE: fills a surface with about CELLS tetrahedra by TetGen and writes what
+ * bench_mesh_load() reads. A program of its own because of TetGen's licence and because of the memory that meshing
+ * takes. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,7 +35,8 @@ static void add_quad(TetcastSurface *surface, int64_t a, int64_t b, int64_t c, i
 
 /* Where vertex j of quarter q of ring i lies: 4 · min(i, 2n − i) vertices to a ring, one at each pole. */
 static int64_t on_sphere(int64_t first, int n, int i, int q, int j) {
-  const int64_t m = i <= n ? i : 2 * n - i, before = i <= n ? 2 * m * (m - 1) + 1 : (int64_t)4 * n * n + 1 - 2 * m * (m + 1);
+  const int64_t m = i <= n ? i : 2 * n - i,
+                before = i <= n ? 2 * m * (m - 1) + 1 : (int64_t)4 * n * n + 1 - 2 * m * (m + 1);
   return first + (i == 0 ? 0 : m == 0 ? (int64_t)4 * n * n + 1 : before + (q * m + j) % (4 * m));
 }
 
@@ -52,8 +54,10 @@ static void add_sphere(TetcastSurface *surface, double radius, int n) {
     for (int q = 0; q < 4; q++) {
       for (int j = 0; j <= i; j++) { /* between ring i and the longer ring i + 1; then their mirror images */
         const int mi = 2 * n - i, mo = mi - 1;
-        add_triangle(surface, on_sphere(first, n, i, q, j), on_sphere(first, n, i + 1, q, j), on_sphere(first, n, i + 1, q, j + 1));
-        add_triangle(surface, on_sphere(first, n, mi, q, j), on_sphere(first, n, mo, q, j + 1), on_sphere(first, n, mo, q, j));
+        add_triangle(surface, on_sphere(first, n, i, q, j), on_sphere(first, n, i + 1, q, j),
+                     on_sphere(first, n, i + 1, q, j + 1));
+        add_triangle(surface, on_sphere(first, n, mi, q, j), on_sphere(first, n, mo, q, j + 1),
+                     on_sphere(first, n, mo, q, j));
         if (j < i) {
           add_triangle(surface, on_sphere(first, n, i, q, j), on_sphere(first, n, i + 1, q, j + 1),
                        on_sphere(first, n, i, q, j + 1));
@@ -121,8 +125,10 @@ int main(int argc, char **argv) {
   const int around = (int)(2 * pi * large / edge) + 8, across = (int)(2 * pi * small / edge) + 6;
   const size_t most = shell ? 8 * (size_t)(rings * rings + inside * inside) : 2 * (size_t)around * (size_t)across;
   double hole[3] = {0.5, 0.5, 0.5};
-  TetcastSurface surface = {.vertices = calloc(most, 3 * sizeof(double)), .triangles = calloc(most, 3 * sizeof(int64_t)),
-                            .hole_count = shell, .holes = hole};
+  TetcastSurface surface = {.vertices = calloc(most, 3 * sizeof(double)),
+                            .triangles = calloc(most, 3 * sizeof(int64_t)),
+                            .hole_count = shell,
+                            .holes = hole};
   if (!surface.vertices || !surface.triangles) {
     fprintf(stderr, "tetcast_bench_body: no memory\n");
     return 1;

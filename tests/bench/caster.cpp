@@ -38,7 +38,7 @@ public:
   static WindowlessMapper *New();
   vtkTypeMacro(WindowlessMapper, vtkUnstructuredGridVolumeRayCastMapper)
 
-  void SetImageSize(int width, int height) {
+      void SetImageSize(int width, int height) {
     ImageViewportSize[0] = ImageInUseSize[0] = width;
     ImageViewportSize[1] = ImageInUseSize[1] = height;
     ImageOrigin[0] = ImageOrigin[1] = 0;
@@ -49,12 +49,14 @@ protected:
 };
 vtkStandardNewMacro(WindowlessMapper);
 
-// Where the mapper would send its pictures. The class that VTK has for it belongs to OpenGL, and the mapper can't do without one.
+// Where the mapper would send its pictures. The class that VTK has for it belongs to OpenGL, and the mapper can't do
+// without one.
 class NoDisplay : public vtkRayCastImageDisplayHelper {
 public:
   static NoDisplay *New();
-  vtkTypeMacro(NoDisplay, vtkRayCastImageDisplayHelper)
-  void RenderTexture(vtkVolume *, vtkRenderer *, int[2], int[2], int[2], int[2], float, unsigned char *) override {}
+  vtkTypeMacro(NoDisplay, vtkRayCastImageDisplayHelper) void RenderTexture(vtkVolume *, vtkRenderer *, int[2], int[2],
+                                                                           int[2], int[2], float,
+                                                                           unsigned char *) override {}
   void RenderTexture(vtkVolume *, vtkRenderer *, int[2], int[2], int[2], int[2], float, unsigned short *) override {}
   void RenderTexture(vtkVolume *, vtkRenderer *, vtkFixedPointRayCastImage *, float) override {}
 };
@@ -64,8 +66,7 @@ VTK_CREATE_CREATE_FUNCTION(NoDisplay)
 class Factory : public vtkObjectFactory {
 public:
   static Factory *New();
-  vtkTypeMacro(Factory, vtkObjectFactory)
-  const char *GetVTKSourceVersion() override { return VTK_SOURCE_VERSION; }
+  vtkTypeMacro(Factory, vtkObjectFactory) const char *GetVTKSourceVersion() override { return VTK_SOURCE_VERSION; }
   const char *GetDescription() override { return "no display"; }
 
 protected:
@@ -159,7 +160,9 @@ Caster *caster_create(const BenchMesh *mesh) try {
   return nullptr;
 }
 
-void caster_destroy(Caster *caster) { delete caster; }
+void caster_destroy(Caster *caster) {
+  delete caster;
+}
 
 bool caster_view(Caster *caster, const TetcastCamera *camera, int width, int height) try {
   caster->width = width;
@@ -183,7 +186,8 @@ bool caster_transfer(Caster *caster, const TetcastTransferFunctionDesc *transfer
   for (int64_t i = 0; i < transfer->opacity_count; i++) {
     const double *knot = transfer->opacity + 2 * i;
     opacity->AddPoint(knot[0], knot[1]);
-    // VTK 9.1's linear integrators split at the colours' knots but only at the first of the opacity: theirs go for both.
+    // VTK 9.1's linear integrators split at the colours' knots but only at the first of the opacity: theirs go for
+    // both.
     double rgb[3];
     color->GetColor(knot[0], rgb);
     color->AddRGBPoint(knot[0], rgb[0], rgb[1], rgb[2]);
@@ -232,4 +236,6 @@ int64_t caster_cast(Caster *caster, float *pixels) {
   return crossed;
 }
 
-const char *caster_vtk_version(void) { return vtkVersion::GetVTKVersion(); }
+const char *caster_vtk_version(void) {
+  return vtkVersion::GetVTKVersion();
+}

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* VTK's unstructured ray caster (vtkUnstructuredGridVolumeRayCastMapper's parts) without a window: the same calls in the same
- * order as the mapper's, one thread, but the picture stays in floating point. */
+/* VTK's unstructured ray caster (vtkUnstructuredGridVolumeRayCastMapper's parts) without a window: the same calls in
+ * the same order as the mapper's, one thread, but the picture stays in floating point. */
 #ifndef BENCH_CASTER_H
 #define BENCH_CASTER_H
 
@@ -28,14 +28,15 @@ typedef struct Caster Caster;
 Caster *caster_create(const BenchMesh *mesh);
 void caster_destroy(Caster *caster);
 
-/* What the mapper does before each picture: the first call builds the triangles and links of the mesh, each call projects points and
- * triangles. Orthographic and perspective; square pixels. */
+/* What the mapper does before each picture: the first call builds the triangles and links of the mesh, each call
+ * projects points and triangles. Orthographic and perspective; square pixels. */
 bool caster_view(Caster *caster, const TetcastCamera *camera, int width, int height);
 
 /* Makes the integrator ready for a transfer function given as opacity, with κ = α / unit distance. */
 bool caster_transfer(Caster *caster, const TetcastTransferFunctionDesc *transfer, CasterIntegrator integrator);
 
-/* The picture: [height][width][4], row 0 at the top. Rays end at 99 % opacity as in the mapper. Returns the cells crossed. */
+/* The picture: [height][width][4], row 0 at the top. Rays end at 99 % opacity as in the mapper. Returns the cells
+ * crossed. */
 int64_t caster_cast(Caster *caster, float *pixels);
 
 const char *caster_vtk_version(void);

@@ -18,13 +18,14 @@
 
 namespace {
 
-// n³ cubes, as VTK has them, with vertices numbered along x, y and z or at random. VTK's filter remembers how it cut a cell whose
-// vertices were in the same order, which all are in the first case.
+// n³ cubes, as VTK has them, with vertices numbered along x, y and z or at random. VTK's filter remembers how it cut a
+// cell whose vertices were in the same order, which all are in the first case.
 void make_cubes(int n, bool shuffled, vtkUnstructuredGrid *grid) {
   const vtkIdType m = n + 1;
   std::vector<vtkIdType> number(static_cast<size_t>(m * m * m));
   std::iota(number.begin(), number.end(), vtkIdType{0});
-  if (shuffled) std::shuffle(number.begin(), number.end(), std::mt19937_64(1));
+  if (shuffled)
+    std::shuffle(number.begin(), number.end(), std::mt19937_64(1));
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   points->SetNumberOfPoints(m * m * m);
@@ -38,7 +39,8 @@ void make_cubes(int n, bool shuffled, vtkUnstructuredGrid *grid) {
       for (int i = 0; i < n; ++i) {
         const vtkIdType a = i + m * (j + m * k), b = a + m * m;
         vtkIdType corners[8] = {a, a + 1, a + m + 1, a + m, b, b + 1, b + m + 1, b + m};
-        for (vtkIdType &corner : corners) corner = number[static_cast<size_t>(corner)];
+        for (vtkIdType &corner : corners)
+          corner = number[static_cast<size_t>(corner)];
         cells->InsertNextCell(8, corners);
       }
     }
@@ -59,7 +61,8 @@ int64_t cut(vtkUnstructuredGrid *grid) {
   desc.connectivity.data = grid->GetCells()->GetConnectivityArray()->GetVoidPointer(0);
   desc.connectivity.type = grid->GetCells()->IsStorage64Bit() ? TETCAST_TYPE_INT64 : TETCAST_TYPE_INT32;
   desc.connectivity.count = grid->GetNumberOfCells();
-  must(tetcast_context_create(&about, &context) == TETCAST_OK && tetcast_cells_cut(context, &desc, &result) == TETCAST_OK,
+  must(tetcast_context_create(&about, &context) == TETCAST_OK &&
+           tetcast_cells_cut(context, &desc, &result) == TETCAST_OK,
        "hexahedra can't be cut");
   const int64_t count = tetcast_cut_tetrahedra(result).count;
   tetcast_cut_destroy(&result);

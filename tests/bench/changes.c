@@ -40,7 +40,8 @@ void job_memory_vtk(const Job *job) {
 
 /* ── another transfer function ── */
 
-/* What a change costs: setting it, and by how much the next picture, a small one, takes longer than the one after that. */
+/* What a change costs: setting it, and by how much the next picture, a small one, takes longer than the one after that.
+ */
 static void change(const Job *job, Tet *tet, const char *what, const Transfer *from, const Transfer *to, int threads) {
   enum { SMALL = 32 };
   const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
@@ -58,7 +59,8 @@ static void change(const Job *job, Tet *tet, const char *what, const Transfer *f
     Clock set = tet_transfer(tet, to);
     Clock first = tet_render(tet, &camera, NULL, frame, NULL);
     Clock later = measure_frame(job, tet, &camera, NULL, frame, NULL);
-    times_add(&all, (Clock){.wall = set.wall + fmax(0, first.wall - later.wall), .cpu = set.cpu + fmax(0, first.cpu - later.cpu)});
+    times_add(&all, (Clock){.wall = set.wall + fmax(0, first.wall - later.wall),
+                            .cpu = set.cpu + fmax(0, first.cpu - later.cpu)});
   }
   row.times = &all;
   row_write(&row);
@@ -146,21 +148,22 @@ void job_features(const Job *job) {
   }
   const TetcastType f32 = TETCAST_TYPE_FLOAT32, f64 = TETCAST_TYPE_FLOAT64;
   Feature features[] = {
-    {"one piece and one colour", &transfer_linear, 0, f64, 0, 1, {{0}, {0}}, {0}},
-    {"colours with knots", &colors, 0, f64, 0, 1, {{0}, {0}}, {0}},
-    {"extinction with knots", &knots, 0, f64, 0, 1, {{0}, {0}}, {0}},
-    {"both with knots", &transfer_soft, 0, f64, 0, 1, {{0}, {0}}, {0}},
-    {"field of cells", &transfer_linear, 1, f64, 0, 1, {{0}, {0}}, {0}},
-    {"field the same everywhere", &transfer_linear, 2, f64, 0, 1, {{0}, {0}}, {0}},
-    {"channel of error bounds", &transfer_linear, 0, f64, TETCAST_CHANNEL_ERROR, 1, {{0}, {0}}, {0}},
-    {"frame of float", &transfer_linear, 0, f32, 0, 1, {{0}, {0}}, {0}},
-    {"4 samples a pixel", &transfer_linear, 0, f64, 0, 4, {{0}, {0}}, {0}},
+      {"one piece and one colour", &transfer_linear, 0, f64, 0, 1, {{0}, {0}}, {0}},
+      {"colours with knots", &colors, 0, f64, 0, 1, {{0}, {0}}, {0}},
+      {"extinction with knots", &knots, 0, f64, 0, 1, {{0}, {0}}, {0}},
+      {"both with knots", &transfer_soft, 0, f64, 0, 1, {{0}, {0}}, {0}},
+      {"field of cells", &transfer_linear, 1, f64, 0, 1, {{0}, {0}}, {0}},
+      {"field the same everywhere", &transfer_linear, 2, f64, 0, 1, {{0}, {0}}, {0}},
+      {"channel of error bounds", &transfer_linear, 0, f64, TETCAST_CHANNEL_ERROR, 1, {{0}, {0}}, {0}},
+      {"frame of float", &transfer_linear, 0, f32, 0, 1, {{0}, {0}}, {0}},
+      {"4 samples a pixel", &transfer_linear, 0, f64, 0, 4, {{0}, {0}}, {0}},
   };
   const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
   Tet tet;
   tet_open(&tet, job->mesh, 1);
   tet_prepare(&tet);
-  const int64_t most = job->mesh->cell_count > job->mesh->vertex_count ? job->mesh->cell_count : job->mesh->vertex_count;
+  const int64_t most =
+      job->mesh->cell_count > job->mesh->vertex_count ? job->mesh->cell_count : job->mesh->vertex_count;
   double *memory = calloc((size_t)most, sizeof *memory);
   must(memory != NULL, "no memory");
   TetcastField *fields[3];

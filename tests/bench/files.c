@@ -26,9 +26,10 @@ static Clock read_mesh(const char *path) {
   TetcastField *field = NULL;
   Clock start = clock_now();
   must(tetcast_context_create(NULL, &context) == TETCAST_OK &&
-         tetcast_dataset_read(context, path, NULL, &dataset) == TETCAST_OK &&
-         tetcast_dataset_mesh(dataset, &mesh) == TETCAST_OK &&
-         tetcast_dataset_field(dataset, NULL, &field, NULL) == TETCAST_OK, "the mesh can't be read");
+           tetcast_dataset_read(context, path, NULL, &dataset) == TETCAST_OK &&
+           tetcast_dataset_mesh(dataset, &mesh) == TETCAST_OK &&
+           tetcast_dataset_field(dataset, NULL, &field, NULL) == TETCAST_OK,
+       "the mesh can't be read");
   Clock time = clock_since(start);
   tetcast_field_destroy(&field);
   tetcast_mesh_destroy(&mesh);
@@ -37,7 +38,9 @@ static Clock read_mesh(const char *path) {
   return time;
 }
 
-static double seconds(struct timeval time) { return (double)time.tv_sec + 1e-6 * (double)time.tv_usec; }
+static double seconds(struct timeval time) {
+  return (double)time.tv_sec + 1e-6 * (double)time.tv_usec;
+}
 
 /* Runs a program to its end. */
 static Clock run(char *const arguments[]) {

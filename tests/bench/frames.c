@@ -15,7 +15,7 @@ typedef struct Contender {
   int threads;
   Times frame, view; /* a picture; the part of it that VTK spends before it casts rays */
   Times transfer;    /* VTK's readiness for another transfer function */
-  int64_t crossed;  /* cells */
+  int64_t crossed;   /* cells */
   TetcastRenderStats stats;
   double largest_error, mean_square; /* against tetcast's exact picture */
   double bound;                      /* on the error, by tetcast itself */
@@ -26,17 +26,17 @@ typedef struct Contender {
 static const double OFF = 1e-4;
 
 static const Contender all[] = {
-  {.name = "tetcast exact", .threads = 1},
-  {.name = "tetcast 1e-6", .tolerance = 1e-6, .threads = 1},
-  {.name = "tetcast 1e-4", .tolerance = 1e-4, .threads = 1},
-  {.name = "tetcast 1e-3", .tolerance = 1e-3, .threads = 1},
-  {.name = "tetcast 1e-2", .tolerance = 1e-2, .threads = 1},
-  {.name = "tetcast exact", .threads = 2},
-  {.name = "tetcast exact", .isa = TETCAST_ISA_AVX2, .threads = 1},
-  {.name = "tetcast exact", .isa = TETCAST_ISA_SCALAR, .threads = 1},
-  {.name = "VTK linear", .vtk = true, .integrator = CASTER_LINEAR, .threads = 1},
-  {.name = "VTK partial", .vtk = true, .integrator = CASTER_PARTIAL, .threads = 1},
-  {.name = "VTK table", .vtk = true, .integrator = CASTER_PRE, .threads = 1},
+    {.name = "tetcast exact", .threads = 1},
+    {.name = "tetcast 1e-6", .tolerance = 1e-6, .threads = 1},
+    {.name = "tetcast 1e-4", .tolerance = 1e-4, .threads = 1},
+    {.name = "tetcast 1e-3", .tolerance = 1e-3, .threads = 1},
+    {.name = "tetcast 1e-2", .tolerance = 1e-2, .threads = 1},
+    {.name = "tetcast exact", .threads = 2},
+    {.name = "tetcast exact", .isa = TETCAST_ISA_AVX2, .threads = 1},
+    {.name = "tetcast exact", .isa = TETCAST_ISA_SCALAR, .threads = 1},
+    {.name = "VTK linear", .vtk = true, .integrator = CASTER_LINEAR, .threads = 1},
+    {.name = "VTK partial", .vtk = true, .integrator = CASTER_PARTIAL, .threads = 1},
+    {.name = "VTK table", .vtk = true, .integrator = CASTER_PRE, .threads = 1},
 };
 enum { CONTENDERS = sizeof all / sizeof *all };
 
@@ -44,7 +44,8 @@ enum { CONTENDERS = sizeof all / sizeof *all };
 typedef enum Field { FIELD_ALL, FIELD_TWO } Field;
 
 static bool takes_part(const Contender *contender, Field field) {
-  return field == FIELD_ALL || (contender->vtk ? contender->integrator == CASTER_LINEAR : contender->tolerance == 0 && !contender->isa);
+  return field == FIELD_ALL ||
+         (contender->vtk ? contender->integrator == CASTER_LINEAR : contender->tolerance == 0 && !contender->isa);
 }
 
 /* A mesh ready for both. */
@@ -65,7 +66,8 @@ Clock measure_frame(const Job *job, Tet *tet, const TetcastCamera *camera, const
   return times_median(&times);
 }
 
-static void compare(Contender *contender, const double *exact, const double *tetcast, const float *vtk, int64_t pixels) {
+static void compare(Contender *contender, const double *exact, const double *tetcast, const float *vtk,
+                    int64_t pixels) {
   contender->largest_error = contender->mean_square = 0;
   contender->not_numbers = contender->off = 0;
   for (int64_t i = 0; i < pixels; i++) {
@@ -136,8 +138,8 @@ static void write_rows(const Job *job, const Contender *contender, bool all_of_i
   }
 }
 
-/* A benchmark of wrong pictures is worth nothing. VTK loses a ray now and then where it grazes an edge; apart from that, through a
- * soft transfer function, its linear integrator and tetcast must mean the same picture. */
+/* A benchmark of wrong pictures is worth nothing. VTK loses a ray now and then where it grazes an edge; apart from
+ * that, through a soft transfer function, its linear integrator and tetcast must mean the same picture. */
 static void check(const Job *job, const Contender *contender, const Contender *exact, bool comparable, int64_t pixels) {
   if (!contender->vtk) {
     must(contender->stats.lost == 0, "tetcast lost a ray");
@@ -145,7 +147,8 @@ static void check(const Job *job, const Contender *contender, const Contender *e
     const double allowed = contender->isa ? 1e-12 : contender->tolerance;
     must(contender->largest_error <= allowed, "tetcast is further from its exact picture than it may be");
   } else if (comparable && contender->integrator == CASTER_LINEAR) {
-    const double off = (double)contender->off / (double)pixels, crossed = (double)contender->crossed / (double)exact->crossed;
+    const double off = (double)contender->off / (double)pixels,
+                 crossed = (double)contender->crossed / (double)exact->crossed;
     const bool same = off < 0.005 && fabs(crossed - 1) < 0.005;
     if (!same) {
       fprintf(stderr, "tetcast_bench: %s: %.3g %% of the pixels differ, VTK crosses %.5g times as many cells\n",
@@ -155,7 +158,8 @@ static void check(const Job *job, const Contender *contender, const Contender *e
   }
 }
 
-static void measure_tetcast(const Job *job, Arena *arena, const TetcastCamera *camera, Contender *contender, TetcastFrame *frame) {
+static void measure_tetcast(const Job *job, Arena *arena, const TetcastCamera *camera, Contender *contender,
+                            TetcastFrame *frame) {
   must(tetcast_context_set_threads(arena->tet.context, contender->threads) == TETCAST_OK, "threads");
   TetcastRenderDesc desc = tetcast_render_desc_default();
   desc.tolerance = contender->tolerance;
@@ -176,8 +180,8 @@ static void ask_for_bound(Arena *arena, const TetcastCamera *camera, int pixels,
   tetcast_frame_destroy(&frame);
 }
 
-static void measure_vtk(Arena *arena, const TetcastCamera *camera, int pixels, Contender *contender, const Transfer *transfer,
-                        float *picture) {
+static void measure_vtk(Arena *arena, const TetcastCamera *camera, int pixels, Contender *contender,
+                        const Transfer *transfer, float *picture) {
   TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
   transfer_fill(&desc, transfer);
   Clock start = clock_now();
@@ -195,7 +199,8 @@ static void frames(Job job, Arena *arena, Field field, const Transfer *transfer,
   memcpy(contenders, all, sizeof all);
   job.row.pixels = pixels;
   const int64_t count = (int64_t)pixels * pixels;
-  const bool comparable = transfer == &transfer_soft && camera.projection == TETCAST_ORTHOGRAPHIC; /* see scene_camera() */
+  const bool comparable =
+      transfer == &transfer_soft && camera.projection == TETCAST_ORTHOGRAPHIC; /* see scene_camera() */
   double *exact = calloc((size_t)count, 4 * sizeof *exact);
   float *vtk = calloc((size_t)count, 4 * sizeof *vtk);
   must(exact && vtk, "no memory for pictures");
@@ -229,7 +234,8 @@ static void frames(Job job, Arena *arena, Field field, const Transfer *transfer,
   }
   for (int i = 0; i < CONTENDERS; i++) {
     const Contender *contender = &contenders[i]; /* on another machine the fastest may be the next one's */
-    if (takes_part(contender, field) && (!contender->isa || strcmp(contender->stats.isa, contenders[0].stats.isa) != 0)) {
+    if (takes_part(contender, field) &&
+        (!contender->isa || strcmp(contender->stats.isa, contenders[0].stats.isa) != 0)) {
       write_rows(&job, contender, field == FIELD_ALL);
     }
   }
@@ -258,7 +264,8 @@ static void prepare(const Job *job, Arena *arena) {
   }
   Clock start = clock_now();
   arena->caster = caster_create(job->mesh);
-  must(arena->caster && caster_view(arena->caster, &camera, job->options->pixels, job->options->pixels), "VTK has no memory");
+  must(arena->caster && caster_view(arena->caster, &camera, job->options->pixels, job->options->pixels),
+       "VTK has no memory");
   Clock first = clock_since(start);
   start = clock_now();
   must(caster_view(arena->caster, &camera, job->options->pixels, job->options->pixels), "VTK has no memory");

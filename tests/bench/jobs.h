@@ -16,12 +16,12 @@ extern "C" {
 #endif
 
 typedef struct Options {
-  unsigned run;        /* RUN_SMALL, … */
-  int rounds;          /* 0: what the scene says */
-  int pixels;          /* width and height of most pictures */
-  double least;        /* seconds for which a frame of tetcast is repeated, and its median taken */
-  const char *folder;  /* for results.csv and pictures */
-  const char *scratch; /* for meshes */
+  unsigned run;                       /* RUN_SMALL, … */
+  int rounds;                         /* 0: what the scene says */
+  int pixels;                         /* width and height of most pictures */
+  double least;                       /* seconds for which a frame of tetcast is repeated, and its median taken */
+  const char *folder;                 /* for results.csv and pictures */
+  const char *scratch;                /* for meshes */
   const char *tetcast, *plain, *body; /* programs; NULL: there is none */
   bool pictures;
 } Options;

@@ -6,7 +6,6 @@
 #include <time.h>
 #include <unistd.h>
 
-
 /* The value of the first line "KEY : VALUE" of /proc/cpuinfo. */
 static void read_cpu(const char *key, char *value, size_t size) {
   char line[8192];
@@ -61,7 +60,8 @@ static void describe_caches(FILE *file) {
 }
 
 void machine_describe(FILE *file) {
-  static const char *const flags[] = {"hypervisor", "sse4_2", "avx", "avx2", "fma", "avx512f", "avx512dq", "avx512vl", "asimd"};
+  static const char *const flags[] = {"hypervisor", "sse4_2",   "avx",      "avx2", "fma",
+                                      "avx512f",    "avx512dq", "avx512vl", "asimd"};
   char model[256], family[64], number[64], features[8192];
   read_cpu("model name", model, sizeof model);
   read_cpu("cpu family", family, sizeof family);

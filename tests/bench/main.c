@@ -9,15 +9,15 @@
 #include "program.h"
 
 static const char help[] =
-  "usage: tetcast_bench [OPTION]…\n"
-  "Writes results.csv. run.sh calls it and makes tables and plots.\n"
-  "  --small          tiny meshes and pictures, one round: does it still work?\n"
-  "  --large          also the mesh of 12 million tetrahedra\n"
-  "  --scene NAME     only this mesh\n"
-  "  --rounds N       every renderer is measured N times instead of 1 to 5\n"
-  "  --pictures       also write the pictures, as .ppm\n"
-  "  -o DIR           where to write [.]\n"
-  "  --bin DIR        where tetcast, tetcast_bench_body and tetcast_bench_plain are [beside this program]\n";
+    "usage: tetcast_bench [OPTION]…\n"
+    "Writes results.csv. run.sh calls it and makes tables and plots.\n"
+    "  --small          tiny meshes and pictures, one round: does it still work?\n"
+    "  --large          also the mesh of 12 million tetrahedra\n"
+    "  --scene NAME     only this mesh\n"
+    "  --rounds N       every renderer is measured N times instead of 1 to 5\n"
+    "  --pictures       also write the pictures, as .ppm\n"
+    "  -o DIR           where to write [.]\n"
+    "  --bin DIR        where tetcast, tetcast_bench_body and tetcast_bench_plain are [beside this program]\n";
 
 static void usage(const char *what) {
   fprintf(stderr, "tetcast_bench: %s\n%s", what, help);
@@ -41,7 +41,9 @@ static bool run_job(const Options *options, const SceneDesc *scene, void (*work)
   snprintf(path, sizeof path, "%s/results.csv", options->folder);
   FILE *file = fopen(path, "a");
   must(file != NULL, "results.csv can't be written");
-  const Job job = {.options = options, .scene = scene, .mesh = &mesh,
+  const Job job = {.options = options,
+                   .scene = scene,
+                   .mesh = &mesh,
                    .row = row_empty(file, scene->name, mesh.cell_count, mesh.vertex_count)};
   work(&job);
   bench_mesh_release(&mesh);
@@ -57,8 +59,11 @@ static bool run_scene(const Options *options, const SceneDesc *scene) {
     void (*work)(const Job *);
     unsigned needs;
     const char *name;
-  } jobs[] = {{job_memory, 0, "memory"}, {job_memory_vtk, 0, "VTK's memory"}, {job_frames, 0, "frames"},
-              {job_visible, SCENE_VISIBLE, "transfer functions"}, {job_features, SCENE_FEATURES, "features"},
+  } jobs[] = {{job_memory, 0, "memory"},
+              {job_memory_vtk, 0, "VTK's memory"},
+              {job_frames, 0, "frames"},
+              {job_visible, SCENE_VISIBLE, "transfer functions"},
+              {job_features, SCENE_FEATURES, "features"},
               {job_file, SCENE_FILE, "files"},
               {job_cells, SCENE_CELLS, "cutting cells"}};
   if (scene->n == 0 && !options->body) {

@@ -5,7 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static size_t size_of(TetcastType type) { return type == TETCAST_TYPE_FLOAT32 ? sizeof(float) : sizeof(double); }
+static size_t size_of(TetcastType type) {
+  return type == TETCAST_TYPE_FLOAT32 ? sizeof(float) : sizeof(double);
+}
 
 bool bench_mesh_allocate(BenchMesh *mesh, TetcastType type, int64_t vertices, int64_t cells) {
   *mesh = (BenchMesh){.type = type, .vertex_count = vertices, .cell_count = cells};
@@ -49,7 +51,8 @@ void bench_mesh_set_vertex(BenchMesh *mesh, int64_t i, const double position[3])
 /* A few waves across the unit cube, slanted so that no level set is parallel to a face of it. */
 void bench_mesh_set_scalars(BenchMesh *mesh) {
   for (int64_t i = 0; i < mesh->vertex_count; i++) {
-    double x = bench_mesh_coordinate(mesh, i, 0), y = bench_mesh_coordinate(mesh, i, 1), z = bench_mesh_coordinate(mesh, i, 2);
+    double x = bench_mesh_coordinate(mesh, i, 0), y = bench_mesh_coordinate(mesh, i, 1),
+           z = bench_mesh_coordinate(mesh, i, 2);
     double s = 0.5 + 0.25 * sin(5 * x + 2 * y + 1) * cos(4 * y - z) + 0.25 * sin(6 * z + 3 * x * y);
     if (mesh->type == TETCAST_TYPE_FLOAT32) {
       ((float *)mesh->scalars)[i] = (float)s;

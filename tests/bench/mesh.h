@@ -20,8 +20,8 @@ typedef struct BenchMesh {
   int32_t (*cells)[4];
 } BenchMesh;
 
-/* The unit cube as n³ small ones of six tetrahedra each (Kuhn), inner vertices moved at random by up to a fifth of an edge, which
- * turns no cell over. False when there is no memory. */
+/* The unit cube as n³ small ones of six tetrahedra each (Kuhn), inner vertices moved at random by up to a fifth of an
+ * edge, which turns no cell over. False when there is no memory. */
 bool bench_mesh_cube(BenchMesh *mesh, int n, TetcastType type);
 
 /* Memory for a mesh, and the scalars for vertices that are in place. */
@@ -29,7 +29,8 @@ bool bench_mesh_allocate(BenchMesh *mesh, TetcastType type, int64_t vertices, in
 void bench_mesh_set_scalars(BenchMesh *mesh);
 void bench_mesh_release(BenchMesh *mesh);
 
-/* A file of this program's own, read into arrays that are exactly as large as the mesh, so that a process's peak memory is known. */
+/* A file of this program's own, read into arrays that are exactly as large as the mesh, so that a process's peak memory
+ * is known. */
 bool bench_mesh_save(const BenchMesh *mesh, const char *path);
 bool bench_mesh_load(BenchMesh *mesh, const char *path);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// tetcast_bench_plain FILE.vtu PICTURE.png WIDTHxHEIGHT: reads a mesh with VTK and writes a picture with OpenImageIO, and nothing
-// between: what `tetcast render` can't do without.
+// tetcast_bench_plain FILE.vtu PICTURE.png WIDTHxHEIGHT: reads a mesh with VTK and writes a picture with OpenImageIO,
+// and nothing between: what `tetcast render` can't do without.
 #include <cstdio>
 #include <cstdlib>
 #include <memory>

@@ -56,7 +56,9 @@ double sample_quantile(const Sample *sample, double fraction) {
   return sorted[below] + (at - (double)below) * (sorted[above] - sorted[below]);
 }
 
-double sample_median(const Sample *sample) { return sample_quantile(sample, 0.5); }
+double sample_median(const Sample *sample) {
+  return sample_quantile(sample, 0.5);
+}
 
 void times_add(Times *times, Clock time) {
   sample_add(&times->wall, time.wall);
@@ -68,17 +70,32 @@ Clock times_median(const Times *times) {
 }
 
 Row row_empty(FILE *file, const char *scene, int64_t cells, int64_t vertices) {
-  return (Row){.file = file, .scene = scene, .cells = cells, .vertices = vertices, .task = "", .what = "", .renderer = "",
-               .crossed = -1, .largest_error = NAN, .rms_error = NAN, .error_bound = NAN, .off = -1, .resident = NAN,
-               .peak = NAN, .shell_faces = -1};
+  return (Row){.file = file,
+               .scene = scene,
+               .cells = cells,
+               .vertices = vertices,
+               .task = "",
+               .what = "",
+               .renderer = "",
+               .crossed = -1,
+               .largest_error = NAN,
+               .rms_error = NAN,
+               .error_bound = NAN,
+               .off = -1,
+               .resident = NAN,
+               .peak = NAN,
+               .shell_faces = -1};
 }
 
 void row_write_names(FILE *file) {
-  fprintf(file, "scene,tetrahedra,vertices,task,case,pixels,renderer,threads,isa,precision,rounds,wall_s,cpu_s,cpu_min_s,cpu_max_s,"
+  fprintf(file, "scene,tetrahedra,vertices,task,case,pixels,renderer,threads,isa,precision,rounds,wall_s,cpu_s,cpu_min_"
+                "s,cpu_max_s,"
                 "cells_crossed,largest_error,rms_error,error_bound,pixels_off,resident_bytes,peak_bytes,shell_faces\n");
 }
 
-static void put_text(FILE *file, const char *text) { fprintf(file, "%s,", text ? text : ""); }
+static void put_text(FILE *file, const char *text) {
+  fprintf(file, "%s,", text ? text : "");
+}
 
 static void put_count(FILE *file, int64_t count, int64_t least) {
   if (count >= least) {

@@ -28,7 +28,7 @@ typedef struct Sample {
   double values[SAMPLES];
 } Sample;
 
-void sample_add(Sample *sample, double value); /* beyond SAMPLES: dropped */
+void sample_add(Sample *sample, double value);                 /* beyond SAMPLES: dropped */
 double sample_quantile(const Sample *sample, double fraction); /* between values in proportion; NaN without values */
 double sample_median(const Sample *sample);
 
@@ -51,10 +51,10 @@ typedef struct Row {
   int threads;
   const char *isa, *precision;
   const Times *times;
-  int64_t crossed;                                 /* cells crossed */
-  double largest_error, rms_error, error_bound;    /* of a channel of a pixel */
-  int64_t off;                                     /* pixels with a channel further off than 1e-4, or no number */
-  double resident, peak;                           /* bytes */
+  int64_t crossed;                              /* cells crossed */
+  double largest_error, rms_error, error_bound; /* of a channel of a pixel */
+  int64_t off;                                  /* pixels with a channel further off than 1e-4, or no number */
+  double resident, peak;                        /* bytes */
   int64_t shell_faces;
 } Row;
 

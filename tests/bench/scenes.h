@@ -42,15 +42,15 @@ typedef struct SceneDesc {
 /* Scene i = 0, 1, …, NULL beyond the last. */
 const SceneDesc *scene_get(int i);
 
-/* Has tetcast_bench_body, which is `program`, write the body's mesh to a file: TetGen needs much more memory than the mesh that it makes,
- * so that happens in another process. */
+/* Has tetcast_bench_body, which is `program`, write the body's mesh to a file: TetGen needs much more memory than the
+ * mesh that it makes, so that happens in another process. */
 bool scene_make_body(const SceneDesc *scene, const char *program, const char *path);
 
 /* The scene's mesh, a body's from the file that was written. */
 bool scene_load(BenchMesh *mesh, const SceneDesc *scene, const char *path);
 
-/* A slanted view of the unit cube, which fills much of a square picture. Orthographic: in perspective VTK takes a segment's length
- * along a slightly different ray. */
+/* A slanted view of the unit cube, which fills much of a square picture. Orthographic: in perspective VTK takes a
+ * segment's length along a slightly different ray. */
 TetcastCamera scene_camera(TetcastProjection projection);
 
 enum { TRANSFER_KNOTS = 8 };
@@ -69,7 +69,8 @@ extern const Transfer transfer_sharp;  /* two thin opaque peaks, nothing between
 extern const Transfer transfer_linear; /* one piece, one colour */
 extern const Transfer transfer_blend;  /* one piece, along which the colour changes */
 
-/* A transfer function that shows the cells with a value above `threshold`, and one that shows all with the same knots. */
+/* A transfer function that shows the cells with a value above `threshold`, and one that shows all with the same knots.
+ */
 Transfer transfer_above(double threshold);
 
 /* A value that just the `fraction` of the cells with the highest corners reach above. NaN without memory. */

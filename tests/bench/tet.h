@@ -25,7 +25,8 @@ typedef struct Tet {
 void tet_open(Tet *tet, const BenchMesh *mesh, int threads);
 void tet_close(Tet *tet);
 
-/* From mesh and field to a scene that lacks its transfer function, replacing an earlier one; the time without the freeing. */
+/* From mesh and field to a scene that lacks its transfer function, replacing an earlier one; the time without the
+ * freeing. */
 Clock tet_prepare(Tet *tet);
 
 /* Gives the scene a transfer function. */

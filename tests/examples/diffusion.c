@@ -85,7 +85,8 @@ static bool view_make(View *view, const Kuhn *kuhn, const double *u) {
   context_desc.message = print_message;
 
   TetcastMeshDesc mesh_desc = tetcast_mesh_desc_default();
-  mesh_desc.vertices = (TetcastArray){.data = kuhn->vertices, .type = TETCAST_TYPE_FLOAT64, .count = kuhn->vertex_count};
+  mesh_desc.vertices =
+      (TetcastArray){.data = kuhn->vertices, .type = TETCAST_TYPE_FLOAT64, .count = kuhn->vertex_count};
   mesh_desc.tetrahedra = (TetcastArray){.data = kuhn->cells, .type = TETCAST_TYPE_INT64, .count = kuhn->cell_count};
   mesh_desc.ownership = TETCAST_BORROW;
 

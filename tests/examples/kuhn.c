@@ -16,7 +16,9 @@ static void cross(const double a[3], const double b[3], double c[3]) {
   c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 /* Vertices on a regular grid; each small cube is cut into the six tetrahedra that walk from its lowest corner to its
  * highest along one axis after the other, in the six possible orders (Kuhn). Neighbouring cubes' diagonals meet. */

@@ -13,7 +13,7 @@ typedef struct Kuhn {
   double *mass;            /* [vertex_count]: the integral of a vertex's hat function (lumped mass matrix) */
   double (*stiffness)[10]; /* [cell_count]: ∫ ∇φi·∇φj for the pairs i ≤ j of a cell's four vertices, row by row */
   double *rate;            /* [vertex_count]: for kuhn_step() */
-  double largest_step;     /* explicit Euler with diffusivity 1 is stable, and keeps minimum and maximum, up to here */
+  double largest_step; /* explicit Euler with diffusivity 1 is stable, and keeps minimum and maximum, up to here */
 } Kuhn;
 
 /* Returns 0, or −1 when there is no memory. kuhn_free() in either case. */

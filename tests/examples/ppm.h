@@ -9,7 +9,8 @@
 #include <tetcast/frame.h>
 
 /* Writes a float64 frame over a grey background as binary PPM. The frame's colour is premultiplied by alpha: over an
- * opaque background it is simply added to what of that shines through. Returns 0, or −1 when the file can't be written. */
+ * opaque background it is simply added to what of that shines through. Returns 0, or −1 when the file can't be written.
+ */
 static inline int ppm_write(const char *path, const TetcastFrame *frame, double background) {
   int64_t width = tetcast_frame_width(frame), height = tetcast_frame_height(frame);
   FILE *file = fopen(path, "wb");

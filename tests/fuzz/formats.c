@@ -10,15 +10,15 @@
 
 #include "fuzz.h"
 
-#define GMSH 1
+#define GMSH   1
 #define TETGEN 2
 #define SERIES 3
-#define PVD 4
+#define PVD    4
 #define LEGACY 5
 #define XML    6
 
-#define MESH                                                                                                                               \
-  "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n$EndNodes\n"                              \
+#define MESH                                                                                                           \
+  "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n$EndNodes\n"          \
   "$Elements\n2\n1 4 2 7 1 1 2 3 4\n2 4 2 7 1 2 3 4 5\n$EndElements\n"
 
 const char *const fuzz_seeds[] = {
@@ -37,11 +37,12 @@ const char *const fuzz_seeds[] = {
     "9 0 .5 .5\n10 .5 0 .5\n$EndNodes\n$Elements\n1\n1 11 0 1 2 3 4 5 6 7 8 9 10\n$EndElements\n",
     "$NOD\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$ENDNOD\n$ELM\n1\n1 4 7 7 4 1 2 3 4\n$ENDELM\n",
 #elif FUZZ_FORMAT == TETGEN
-  "5 3 1 1\n1 0 0 0 5 0\n2 1 0 0 6 0\n3 0 1 0 7 1\n4 0 0 1 8 1\n5 1 1 1 8 1\n%2 4 1\n1 1 2 3 4 9\n2 2 3 4 5 9\n",
-  "# of points\n4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n%1 4\n0 0 1 2 3\n",
+    "5 3 1 1\n1 0 0 0 5 0\n2 1 0 0 6 0\n3 0 1 0 7 1\n4 0 0 1 8 1\n5 1 1 1 8 1\n%2 4 1\n1 1 2 3 4 9\n2 2 3 4 5 9\n",
+    "# of points\n4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n%1 4\n0 0 1 2 3\n",
 #elif FUZZ_FORMAT == SERIES
-  "{\"file-series-version\": \"1.0\", \"files\": [{\"name\": \"part.msh\", \"time\": 1}, {\"name\": \"p\\u0061rt.msh\", \"time\": 2e1}],"
-  " \"x\": [true, null, [{}], -1.5e-3, \"\\ud83d\\ude00\\n\"]}\n",
+    "{\"file-series-version\": \"1.0\", \"files\": [{\"name\": \"part.msh\", \"time\": 1}, {\"name\": "
+    "\"p\\u0061rt.msh\", \"time\": 2e1}],"
+    " \"x\": [true, null, [{}], -1.5e-3, \"\\ud83d\\ude00\\n\"]}\n",
 #elif FUZZ_FORMAT == LEGACY
     "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 "
     "1e0\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"
@@ -80,8 +81,9 @@ const char *const fuzz_seeds[] = {
     " Extent=\"0 1 0 1 0 1\"><PointData><DataArray type=\"Int32\" Name=\"s\" format=\"ascii\">1 2 3 4 5 6 7 "
     "8</DataArray></PointData></Piece></ImageData></VTKFile>\n",
 #else
-  "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\"><Collection><DataSet timestep=\"0.5\" part=\"0\" file=\"part.msh\"/>"
-  "<DataSet timestep=\"2\" file=\"part.msh\"/></Collection></VTKFile>\n",
+    "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\"><Collection><DataSet timestep=\"0.5\" "
+    "part=\"0\" file=\"part.msh\"/>"
+    "<DataSet timestep=\"2\" file=\"part.msh\"/></Collection></VTKFile>\n",
 #endif
     NULL};
 
@@ -111,7 +113,8 @@ static bool is_ours(const uint8_t *data, size_t size) {
 #if FUZZ_FORMAT == GMSH
   return size > 0 && data[0] == '$';
 #elif FUZZ_FORMAT == TETGEN
-  return size > 0 && (strchr("0123456789 -%\n", data[0]) || (size > 2 && memcmp(data, "# v", 3) != 0 && data[0] == '#'));
+  return size > 0 &&
+         (strchr("0123456789 -%\n", data[0]) || (size > 2 && memcmp(data, "# v", 3) != 0 && data[0] == '#'));
 #elif FUZZ_FORMAT == SERIES
   return size > 0 && data[0] == '{';
 #elif FUZZ_FORMAT == LEGACY
@@ -128,19 +131,24 @@ static bool is_ours(const uint8_t *data, size_t size) {
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   if (!context) {
     const TetcastContextDesc desc = {.cookie = tetcast_context_desc_default().cookie, .threads = 1};
-    if (tetcast_context_create(&desc, &context) != TETCAST_OK) return 0;
+    if (tetcast_context_create(&desc, &context) != TETCAST_OK)
+      return 0;
     fuzz_file("part.msh", MESH, sizeof MESH - 1);
   }
-  if (!is_ours(data, size)) return 0;
+  if (!is_ours(data, size))
+    return 0;
   TetcastDataset *dataset;
-  if (tetcast_dataset_read(context, write_input(data, size), NULL, &dataset) != TETCAST_OK) return 0;
+  if (tetcast_dataset_read(context, write_input(data, size), NULL, &dataset) != TETCAST_OK)
+    return 0;
   TetcastMesh *mesh;
   TetcastVolume *volume;
   TetcastField *field;
   TetcastScene *scene;
-  if (tetcast_dataset_mesh(dataset, &mesh) == TETCAST_OK && tetcast_volume_create(context, mesh, NULL, &volume) == TETCAST_OK) {
+  if (tetcast_dataset_mesh(dataset, &mesh) == TETCAST_OK &&
+      tetcast_volume_create(context, mesh, NULL, &volume) == TETCAST_OK) {
     if (tetcast_scene_create(context, volume, &scene) == TETCAST_OK) {
-      if (tetcast_dataset_field(dataset, NULL, &field, NULL) == TETCAST_OK) tetcast_scene_set_field(scene, field);
+      if (tetcast_dataset_field(dataset, NULL, &field, NULL) == TETCAST_OK)
+        tetcast_scene_set_field(scene, field);
       tetcast_field_destroy(&field);
       tetcast_scene_destroy(&scene);
     }

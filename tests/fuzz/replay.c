@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Runs a fuzz target without libFuzzer: over files, or over its seeds, whole, cut short and changed in ways that are the same each time.
+/* Runs a fuzz target without libFuzzer: over files, or over its seeds, whole, cut short and changed in ways that are
+ * the same each time.
  * --write FOLDER writes the seeds, for libFuzzer to begin with. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,18 +19,22 @@ static uint32_t next_random(void) {
 /* In memory of its own size, so that a sanitizer sees what is read beyond. */
 static void run(const char *text, size_t size) {
   uint8_t *data = malloc(size ? size : 1);
-  if (!data) abort();
+  if (!data)
+    abort();
   memcpy(data, text, size);
   LLVMFuzzerTestOneInput(data, size);
   free(data);
 }
 
 static void run_seed(const char *seed) {
-  static const char *const words[] = {"-1", "0", "99999999999999999999", "1e999", "nan", "{", "[", "\"", "\n", "$", "4294967296", "<", "\\u0000"};
+  static const char *const words[] = {"-1", "0", "99999999999999999999", "1e999", "nan",    "{", "[", "\"",
+                                      "\n", "$", "4294967296",           "<",     "\\u0000"};
   const size_t size = strlen(seed);
   char *text = malloc(size + 64);
-  if (!text) abort();
-  for (size_t i = 0; i < 40; ++i) run(seed, size * i / 39);
+  if (!text)
+    abort();
+  for (size_t i = 0; i < 40; ++i)
+    run(seed, size * i / 39);
   for (int i = 0; i < CHANGES && size > 0; ++i) {
     size_t length = size;
     memcpy(text, seed, size);
@@ -62,7 +67,8 @@ static int run_file(const char *path) {
   size_t size = 0, got = 1;
   while (got > 0) {
     text = realloc(text, size + 65536);
-    if (!text) abort();
+    if (!text)
+      abort();
     got = fread(text + size, 1, 65536, file);
     size += got;
   }
@@ -86,7 +92,9 @@ int main(int argc, char **argv) {
     }
     return failed;
   }
-  for (int i = 1; i < argc; ++i) failed |= run_file(argv[i]);
-  for (int i = 0; argc == 1 && fuzz_seeds[i]; ++i) run_seed(fuzz_seeds[i]);
+  for (int i = 1; i < argc; ++i)
+    failed |= run_file(argv[i]);
+  for (int i = 0; argc == 1 && fuzz_seeds[i]; ++i)
+    run_seed(fuzz_seeds[i]);
   return failed;
 }

@@ -322,7 +322,8 @@ static double at(const TetcastFrame *frame, const void *values, size_t i) {
                                                            : double(static_cast<const float *>(values)[i]);
 }
 
-// Radiance, optical depth and transmittance of each group, then the path's length, behind colour and alpha or without them.
+// Radiance, optical depth and transmittance of each group, then the path's length, behind colour and alpha or without
+// them.
 static void groups_are_channels(void **) {
   clear_folder();
   const int64_t width = 19, height = 83;
@@ -334,7 +335,8 @@ static void groups_are_channels(void **) {
   } cases[] = {{"a.exr", TETCAST_TYPE_FLOAT32, 1, false}, {"b.exr", TETCAST_TYPE_FLOAT32, 12, false},
                {"c.exr", TETCAST_TYPE_FLOAT32, 12, true}, {"d.tif", TETCAST_TYPE_FLOAT64, 3, true},
                {"e.tif", TETCAST_TYPE_FLOAT32, 2, false}, {"f.exr", TETCAST_TYPE_FLOAT64, 1, true}};
-  const TetcastChannel kinds[] = {TETCAST_CHANNEL_RADIANCE, TETCAST_CHANNEL_OPTICAL_DEPTH, TETCAST_CHANNEL_TRANSMITTANCE};
+  const TetcastChannel kinds[] = {TETCAST_CHANNEL_RADIANCE, TETCAST_CHANNEL_OPTICAL_DEPTH,
+                                  TETCAST_CHANNEL_TRANSMITTANCE};
   const char *const names[] = {"radiance", "optical_depth", "transmittance"};
   for (const auto &item : cases) {
     TetcastFrame *frame = render_channels(item.type, width, height, item.groups);
@@ -361,12 +363,19 @@ static void groups_are_channels(void **) {
     for (int kind = 0; kind < 3; kind++) {
       for (int g = 0; g < item.groups; g++) {
         char name[64];
-        std::snprintf(name, sizeof name, item.groups == 1 ? "%s" : item.groups > 10 ? "%s.%02d" : "%s.%d", names[kind], g);
+        std::snprintf(name, sizeof name,
+                      item.groups == 1   ? "%s"
+                      : item.groups > 10 ? "%s.%02d"
+                                         : "%s.%d",
+                      names[kind], g);
         const int channel = place(name, kind * item.groups + g);
-        assert_true(picture.spec.channelformat(channel).basetype == (desc.pixel_type ? TypeDesc::DOUBLE : TypeDesc::FLOAT));
+        assert_true(picture.spec.channelformat(channel).basetype ==
+                    (desc.pixel_type ? TypeDesc::DOUBLE : TypeDesc::FLOAT));
         for (size_t i = 0; i < size_t(width * height); i++) {
-          const double value = at(frame, tetcast_frame_channel(frame, kinds[kind]), i * size_t(item.groups) + size_t(g));
-          assert_true(picture.values[i * size_t(channels) + size_t(channel)] == (desc.pixel_type ? value : double(float(value))));
+          const double value =
+              at(frame, tetcast_frame_channel(frame, kinds[kind]), i * size_t(item.groups) + size_t(g));
+          assert_true(picture.values[i * size_t(channels) + size_t(channel)] ==
+                      (desc.pixel_type ? value : double(float(value))));
           if (kind == 0)
             largest = std::max(largest, value);
         }
@@ -376,7 +385,8 @@ static void groups_are_channels(void **) {
     const int last = place("path_length", 3 * item.groups);
     for (size_t i = 0; i < size_t(width * height); i++) {
       const double value = at(frame, tetcast_frame_channel(frame, TETCAST_CHANNEL_PATH_LENGTH), i);
-      assert_true(picture.values[i * size_t(channels) + size_t(last)] == (desc.pixel_type ? value : double(float(value))));
+      assert_true(picture.values[i * size_t(channels) + size_t(last)] ==
+                  (desc.pixel_type ? value : double(float(value))));
     }
     tetcast_frame_destroy(&frame);
   }
@@ -462,8 +472,8 @@ static std::vector<double> raw_pixels(const fs::path &path, int64_t width, int64
   return values;
 }
 
-// Whatever OpenImageIO writes here is the picture when it is read back, or is refused: every extension that it knows, with
-// every type of pixel, over every kind of background.
+// Whatever OpenImageIO writes here is the picture when it is read back, or is refused: every extension that it knows,
+// with every type of pixel, over every kind of background.
 static void every_format_holds_the_picture_or_is_refused(void **) {
   const int64_t width = 37, height = 70;
   std::vector<double> pixels; // smooth, for the formats that lose what is not; with all kinds of alpha
@@ -537,10 +547,10 @@ static void colors_beyond_a_type_do_not_become_infinite(void **) {
     double color;
     TypeDesc::BASETYPE standard;
     bool half, radiance;
-  } cases[] = {{0, TypeDesc::HALF, true, true},        {0.1, TypeDesc::HALF, true, true},
-               {65504, TypeDesc::HALF, true, true},    {65600, TypeDesc::FLOAT, false, true},
+  } cases[] = {{0, TypeDesc::HALF, true, true},         {0.1, TypeDesc::HALF, true, true},
+               {65504, TypeDesc::HALF, true, true},     {65600, TypeDesc::FLOAT, false, true},
                {-70000, TypeDesc::FLOAT, false, false}, {1e-9, TypeDesc::FLOAT, true, true},
-               {-0.5, TypeDesc::HALF, true, false},    {3e38, TypeDesc::FLOAT, false, false}};
+               {-0.5, TypeDesc::HALF, true, false},     {3e38, TypeDesc::FLOAT, false, false}};
   for (const auto &one : cases) {
     std::vector<double> pixels = {0, 0, one.color, 1};
     assert_int_equal(write(folder / "a.exr", pixels, 1, 1, TETCAST_PIXEL_DEFAULT), TETCAST_OK);
@@ -820,7 +830,9 @@ static void full_disk_leaves_the_old_file_and_no_word_on_stderr(void **) {
 
 int main() {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(formats_hold_what_they_should), cmocka_unit_test(the_error_is_a_fifth_channel), cmocka_unit_test(groups_are_channels),
+      cmocka_unit_test(formats_hold_what_they_should),
+      cmocka_unit_test(the_error_is_a_fifth_channel),
+      cmocka_unit_test(groups_are_channels),
       cmocka_unit_test(every_format_holds_the_picture_or_is_refused),
       cmocka_unit_test(webp_is_for_opaque_backgrounds),
       cmocka_unit_test(colors_beyond_a_type_do_not_become_infinite),

@@ -54,11 +54,11 @@ void constant_in_one_cell(void **) {
       near(rgba[3], alpha, 1e-18L);
       near(rgba[0], alpha / 4, 1e-18L);
       near(rgba[2], alpha, 1e-18L);
-      near(cast(scene, {0.25, 0.125, 2}, {0, 0, -1})[3], alpha, 1e-18L);  /* from the other side */
+      near(cast(scene, {0.25, 0.125, 2}, {0, 0, -1})[3], alpha, 1e-18L);                     /* from the other side */
       near(cast(scene, {0.25, 0.125, 0.5}, {0, 0, 1})[3], -std::expm1(-3 * 0.125L), 1e-18L); /* from inside */
-      near(cast(scene, {0.25, 0.125, 2}, {0, 0, 1})[3], 0, 0); /* looking away */
-      near(cast(scene, {0.75, 0.75, -1}, {0, 0, 1})[3], 0, 0); /* passing by */
-      std::swap(scene.mesh.cells[0][0], scene.mesh.cells[0][1]); /* order is free */
+      near(cast(scene, {0.25, 0.125, 2}, {0, 0, 1})[3], 0, 0);                               /* looking away */
+      near(cast(scene, {0.75, 0.75, -1}, {0, 0, 1})[3], 0, 0);                               /* passing by */
+      std::swap(scene.mesh.cells[0][0], scene.mesh.cells[0][1]);                             /* order is free */
     }
   }
 }
@@ -111,9 +111,7 @@ void bends(void **) {
 
 /* Nothing below 0.25, then κ = 5 in red to 0.625, then κ = 7 in green: steps in both curves, at the same value. */
 void steps(void **) {
-  const Transfer transfer = {{{0.625, 1, 0, 0}, {0.625, 0, 1, 0}},
-                             {{0.25, 0}, {0.25, 5}, {0.625, 5}, {0.625, 7}},
-                             {}};
+  const Transfer transfer = {{{0.625, 1, 0, 0}, {0.625, 0, 1, 0}}, {{0.25, 0}, {0.25, 5}, {0.625, 5}, {0.625, 7}}, {}};
   const Extended first = std::exp(-5 * 0.375L), second = std::exp(-7 * 0.375L);
   for (int n : {1, 3, 4}) {
     const auto field = [](auto &p) { return p[2]; };
@@ -281,14 +279,20 @@ void wider_type_agrees(void **) {
 
 int main() {
   const CMUnitTest tests[] = {
-    cmocka_unit_test(constant_in_one_cell), cmocka_unit_test(linear_across_a_cube),
-    cmocka_unit_test(rising_and_falling),   cmocka_unit_test(bends),
-    cmocka_unit_test(steps),                cmocka_unit_test(opacity),
-    cmocka_unit_test(thin_and_thick),       cmocka_unit_test(transparent_and_left_out),
-    cmocka_unit_test(picture_is_upright),   cmocka_unit_test(scaling),
-    cmocka_unit_test(along_faces_and_edges), cmocka_unit_test(translation),
+      cmocka_unit_test(constant_in_one_cell),
+      cmocka_unit_test(linear_across_a_cube),
+      cmocka_unit_test(rising_and_falling),
+      cmocka_unit_test(bends),
+      cmocka_unit_test(steps),
+      cmocka_unit_test(opacity),
+      cmocka_unit_test(thin_and_thick),
+      cmocka_unit_test(transparent_and_left_out),
+      cmocka_unit_test(picture_is_upright),
+      cmocka_unit_test(scaling),
+      cmocka_unit_test(along_faces_and_edges),
+      cmocka_unit_test(translation),
 #ifdef TETCAST_REFERENCE_QUAD
-    cmocka_unit_test(wider_type_agrees),
+      cmocka_unit_test(wider_type_agrees),
 #endif
   };
   return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The error channel is a bound: pictures of random scenes, chosen to be hard, against the reference in extended precision, in every pixel and channel;
- * exact ones and those within a tolerance, of all fields and of coefficients. A pixel in which long double comes near the bound is decided in
- * __float128. TETCAST_BOUND_PIXELS sets how many pixels are compared (default 120,000; the long run is 1e7). Prints how much of the bound is used. */
+/* The error channel is a bound: pictures of random scenes, chosen to be hard, against the reference in extended
+ * precision, in every pixel and channel; exact ones and those within a tolerance, of all fields and of coefficients. A
+ * pixel in which long double comes near the bound is decided in
+ * __float128. TETCAST_BOUND_PIXELS sets how many pixels are compared (default 120,000; the long run is 1e7). Prints how
+ * much of the bound is used. */
 #include <atomic>
 #include <csetjmp>
 #include <cstdarg>
@@ -49,9 +51,10 @@ struct Random {
 /* A scene, and how it is rendered. */
 struct Case {
   std::string kind;
-  Scene scene;               /* the mesh, its field, the transfer function, the camera */
-  std::vector<Mesh> groups;  /* coefficients: the same mesh with the extinction of each group, then with the emission of each */
-  bool single = false;       /* coordinates and values are given in single precision */
+  Scene scene; /* the mesh, its field, the transfer function, the camera */
+  std::vector<Mesh>
+      groups; /* coefficients: the same mesh with the extinction of each group, then with the emission of each */
+  bool single = false; /* coordinates and values are given in single precision */
   TetcastTraversal traversal = TETCAST_TRAVERSAL_SHELL;
   TetcastIsa isa = TETCAST_ISA_AUTO;
   TetcastType type = TETCAST_TYPE_FLOAT64;
@@ -80,7 +83,8 @@ std::vector<bool> orders_of(const Mesh &mesh) {
   return orders;
 }
 
-/* Moves an inner vertex towards another one until only this part of its way is left, unless cells would be turned inside out. */
+/* Moves an inner vertex towards another one until only this part of its way is left, unless cells would be turned
+ * inside out. */
 void bring_together(Mesh &mesh, size_t from, size_t to, double part) {
   Point &p = mesh.points[from];
   const Point before = p, &q = mesh.points[to];
@@ -96,7 +100,8 @@ void bring_together(Mesh &mesh, size_t from, size_t to, double part) {
 Mesh random_mesh(Random &random, std::string &kind, double &size, Point &middle) {
   const double waves = random.chance(0.3) ? random.power(0, 1.5) : 1;
   const bool regular = random.chance(0.25);
-  Mesh mesh = cube(2 + random.below(4), regular ? 0 : random.between(0, 0.24), [&](const auto &p) { return wave(p, waves); });
+  Mesh mesh =
+      cube(2 + random.below(4), regular ? 0 : random.between(0, 0.24), [&](const auto &p) { return wave(p, waves); });
   kind = regular ? "regular" : "jittered";
   double scale[3] = {1, 1, 1}, offset = 0;
   switch (random.below(6)) {
@@ -117,7 +122,8 @@ Mesh random_mesh(Random &random, std::string &kind, double &size, Point &middle)
   case 3:
     scale[0] = scale[1] = scale[2] = random.power(-30, 30);
     break;
-  default: break;
+  default:
+    break;
   }
   size = *std::max_element(scale, scale + 3);
   for (size_t k = 0; k < 3; k++)
@@ -128,11 +134,13 @@ Mesh random_mesh(Random &random, std::string &kind, double &size, Point &middle)
   return mesh;
 }
 
-/* Ramps and peaks as narrow as 1e-12, steps, jumps of colour, or nothing of it; extinction of all strengths for a mesh of this size. */
+/* Ramps and peaks as narrow as 1e-12, steps, jumps of colour, or nothing of it; extinction of all strengths for a mesh
+ * of this size. */
 Transfer random_transfer(Random &random, double size) {
   Transfer transfer;
   const bool gray = random.chance(0.15);
-  const double strength = random.power(-3, 3) / size, brightest = random.chance(0.2) ? 30 : 1, widest = random.power(-12, -0.5);
+  const double strength = random.power(-3, 3) / size, brightest = random.chance(0.2) ? 30 : 1,
+               widest = random.power(-12, -0.5);
   double at = random.between(0, 0.4);
   const int knots = 1 + random.below(7);
   for (int i = 0; i < knots && at < 1.2; i++) {
@@ -197,7 +205,9 @@ void add_groups(Random &random, Case &c, double size) {
 }
 
 /* By itself, as GCC 12 at -O3 forgets to round some of the numbers of a loop. */
-[[gnu::noinline]] double rounded_to_single(double x) { return double(float(x)); }
+[[gnu::noinline]] double rounded_to_single(double x) {
+  return double(float(x));
+}
 
 void round_to_single(Mesh &mesh) {
   for (auto &p : mesh.points)
@@ -216,8 +226,8 @@ void turn(double p[3]) {
   std::copy(q, q + 3, p);
 }
 
-/* A cube seen exactly along one of its sides, or of the planes within that its cells have faces in, from so near that rays miss it or not by as little as
- * rounding. */
+/* A cube seen exactly along one of its sides, or of the planes within that its cells have faces in, from so near that
+ * rays miss it or not by as little as rounding. */
 void see_edge_on(Random &random, Case &c) {
   const bool turned = random.chance(0.7), within = random.chance(0.3);
   const int n = 2 + random.below(3), axis = random.below(3), other = (axis + 1 + random.below(2)) % 3;
@@ -226,7 +236,8 @@ void see_edge_on(Random &random, Case &c) {
   camera = {};
   camera.orthographic = true;
   camera.height = random.power(-18, -5);
-  const double tilt = random.chance(0.5) ? 0 : random.power(-18, -6), plane = within ? double(random.below(n + 1)) / n : random.below(2);
+  const double tilt = random.chance(0.5) ? 0 : random.power(-18, -6),
+               plane = within ? double(random.below(n + 1)) / n : random.below(2);
   for (int k = 0; k < 3; k++) {
     camera.target[k] = k == other ? plane : random.between(0.2, 0.8);
     camera.eye[k] = camera.target[k] + (k == axis ? 3 : k == other ? tilt : 0);
@@ -416,7 +427,8 @@ Picture render(const Case &c) {
 
 /* ∫ j exp(−∫ κ) and ∫ κ along the segments of a ray, those of both with the same ends. */
 template <class Real>
-std::array<Real, 2> radiance_of(const std::vector<Segment<Real>> &extinction, const std::vector<Segment<Real>> &emission) {
+std::array<Real, 2> radiance_of(const std::vector<Segment<Real>> &extinction,
+                                const std::vector<Segment<Real>> &emission) {
   static const Quadrature<Real> rule;
   Real radiance = 0, depth = 0;
   for (size_t i = 0; i < extinction.size(); i++) {
@@ -426,7 +438,8 @@ std::array<Real, 2> radiance_of(const std::vector<Segment<Real>> &extinction, co
     for (int part = 0; part < parts; part++)
       for (size_t k = 0; k < size_t(rule.count); k++) {
         const Real u = (part + rule.node[k]) / parts;
-        radiance += rule.weight[k] / parts * length * (j0 + (j1 - j0) * u) * exponential(-(depth + u * (a + b * u / 2)));
+        radiance +=
+            rule.weight[k] / parts * length * (j0 + (j1 - j0) * u) * exponential(-(depth + u * (a + b * u / 2)));
       }
     depth += a + b / 2;
   }
@@ -488,7 +501,7 @@ template <class Real> double largest_off(const std::array<Real, 4> &truth, const
 
 struct Tally {
   int64_t compared = 0, doubtful = 0, violated = 0;
-  double used = 0;            /* the largest share of a bound */
+  double used = 0;             /* the largest share of a bound */
   double tight = 0, loose = 0; /* sums of logarithms of bounds, of what is off */
 };
 
@@ -498,21 +511,23 @@ struct Judge {
   int shown = 0;
 };
 
-/* Whether the pixel is one of which the reference doesn't know what it is, as its ray lies in a face to all digits: moving it by next to nothing changes the
- * picture by more than the bound. */
+/* Whether the pixel is one of which the reference doesn't know what it is, as its ray lies in a face to all digits:
+ * moving it by next to nothing changes the picture by more than the bound. */
 bool is_doubtful(const Truth<Widest> &widest, int64_t pixel, const double *rgba, double bound) {
   double size = 0;
   for (size_t k = 0; k < 3; k++)
     size = std::max({size, std::abs(widest.c.scene.camera.eye[k]), std::abs(widest.c.scene.camera.target[k])});
   const Widest step = Widest(sizeof(Widest) > 16 || sizeof(Extended) < sizeof(Widest) ? 1e-28 : 1e-30) * size, zero = 0;
-  for (const auto &shift : {Vector<Widest>{step, step / 3, zero}, Vector<Widest>{-step, zero, step / 3}, Vector<Widest>{zero, step, -step},
-                            Vector<Widest>{step / 3, -step, zero}, Vector<Widest>{zero, step / 3, step}, Vector<Widest>{zero, zero, -step}})
+  for (const auto &shift :
+       {Vector<Widest>{step, step / 3, zero}, Vector<Widest>{-step, zero, step / 3}, Vector<Widest>{zero, step, -step},
+        Vector<Widest>{step / 3, -step, zero}, Vector<Widest>{zero, step / 3, step}, Vector<Widest>{zero, zero, -step}})
     if (largest_off(widest.pixel(pixel, nullptr, shift), rgba) <= bound)
       return true;
   return false;
 }
 
-void judge_pixel(const Truth<Extended> &truth, const Truth<Widest> &widest, const Picture &picture, int64_t pixel, uint64_t seed, Judge &judge) {
+void judge_pixel(const Truth<Extended> &truth, const Truth<Widest> &widest, const Picture &picture, int64_t pixel,
+                 uint64_t seed, Judge &judge) {
   bool folded = false;
   const double *rgba = &picture.rgba[size_t(4 * pixel)], bound = picture.error[size_t(pixel)];
   double off = largest_off(truth.pixel(pixel, &folded), rgba);
@@ -535,9 +550,11 @@ void judge_pixel(const Truth<Extended> &truth, const Truth<Widest> &widest, cons
     tally.used = std::max(tally.used, off / bound);
   tally.violated += violated;
   if (violated && judge.shown++ < 40)
-    std::printf("violated: scene %llu, %s, %s, isa %d, tolerance %g, pixel %lld: off by %.3g, bound %.3g; %.17g %.17g %.17g %.17g\n",
-                static_cast<unsigned long long>(seed), truth.c.kind.c_str(), picture.precision.c_str(), int(truth.c.isa), truth.c.tolerance,
-                static_cast<long long>(pixel), off, bound, rgba[0], rgba[1], rgba[2], rgba[3]);
+    std::printf("violated: scene %llu, %s, %s, isa %d, tolerance %g, pixel %lld: off by %.3g, bound %.3g; %.17g %.17g "
+                "%.17g %.17g\n",
+                static_cast<unsigned long long>(seed), truth.c.kind.c_str(), picture.precision.c_str(),
+                int(truth.c.isa), truth.c.tolerance, static_cast<long long>(pixel), off, bound, rgba[0], rgba[1],
+                rgba[2], rgba[3]);
 }
 
 void judge_scene(uint64_t seed, Judge &judge) {

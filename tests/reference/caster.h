@@ -137,8 +137,8 @@ public:
       add_cell(i, seen);
   }
 
-  /* What the ray crosses of the cells, in its order. `folded` is set if cells overlap along it: what is seen there is not
-   * defined. */
+  /* What the ray crosses of the cells, in its order. `folded` is set if cells overlap along it: what is seen there is
+   * not defined. */
   std::vector<Segment<Real>> segments(const Ray<Real> &ray, bool *folded = nullptr) const {
     std::vector<Segment<Real>> found;
     for (size_t i : candidates(ray)) {
@@ -195,9 +195,9 @@ public:
     const auto here = pixel_rgba(i, j);
     Real change = 0;
     const Real zero = 0;
-    for (const Vector<Real> &shift : {Vector<Real>{step, zero, zero}, Vector<Real>{-step, zero, zero},
-                                      Vector<Real>{zero, step, zero}, Vector<Real>{zero, -step, zero},
-                                      Vector<Real>{zero, zero, step}, Vector<Real>{zero, zero, -step}}) {
+    for (const Vector<Real> &shift :
+         {Vector<Real>{step, zero, zero}, Vector<Real>{-step, zero, zero}, Vector<Real>{zero, step, zero},
+          Vector<Real>{zero, -step, zero}, Vector<Real>{zero, zero, step}, Vector<Real>{zero, zero, -step}}) {
       const auto there = pixel_rgba(i, j, nullptr, shift);
       for (size_t c = 0; c < 4; c++)
         change = std::max(change, absolute(there[c] - here[c]));

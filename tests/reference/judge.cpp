@@ -42,8 +42,8 @@ bool compare(const char *what, const std::vector<double> &expected, const std::v
       }
     }
     std::printf("  %c  max %.2e  rms %.2e  worst at %zu,%zu: %.17g, should be %.17g\n", "RGBA"[c], largest,
-                std::sqrt(squares / double(pixels.size())), where % width, where / width,
-                image[where * 4 + c], expected[where * 4 + c]);
+                std::sqrt(squares / double(pixels.size())), where % width, where / width, image[where * 4 + c],
+                expected[where * 4 + c]);
     overall = std::max(overall, largest);
   }
   size_t beyond = 0, ill = 0;

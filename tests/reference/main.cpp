@@ -12,22 +12,25 @@ using namespace reference;
 namespace {
 
 const char usage[] =
-  "usage: tetcast_reference SCENE.json [IMAGE.tif [OTHER.tif]] [options]\n"
-  "       tetcast_reference --describe SCENE.json\n"
-  "Computes the picture of a scene file (tetcast render --save-scene) by brute force and compares one or two images,\n"
-  "RGBA of 64 bits, with it; two also with each other, in all pixels. Exit code 1: they differ by more.\n"
-  "  --tolerance X   largest difference of a channel, default 1e-12\n"
-  "  --every N       only each N-th pixel, counted along the rows, and where the two images differ\n"
-  "  --pixel X,Y     only this pixel, from 0,0 at the top left; may be repeated; its values are printed\n"
-  "  --condition     a pixel may also differ by as much as it changes if its ray is moved by 2^-50 of the largest\n"
-  "                  coordinate, a few roundings\n"
-  "  --quad          in __float128 instead of long double, about fifty times slower\n"
-  "  --threads N     default: all processors\n"
-  "  --transfer FILE reads the transfer function from this file instead: opacities are saved in scenes as extinction\n"
-  "  --output FILE   writes what was computed, zero where nothing was\n"
-  "Pixels behind which cells overlap, so that there is no right answer, are left out and counted.\n"
-  "--describe prints xmin xmax ymin ymax zmin zmax, lowest and highest finite value, x y z of a point inside a cell,\n"
-  "and the number of cells.\n";
+    "usage: tetcast_reference SCENE.json [IMAGE.tif [OTHER.tif]] [options]\n"
+    "       tetcast_reference --describe SCENE.json\n"
+    "Computes the picture of a scene file (tetcast render --save-scene) by brute force and compares one or two "
+    "images,\n"
+    "RGBA of 64 bits, with it; two also with each other, in all pixels. Exit code 1: they differ by more.\n"
+    "  --tolerance X   largest difference of a channel, default 1e-12\n"
+    "  --every N       only each N-th pixel, counted along the rows, and where the two images differ\n"
+    "  --pixel X,Y     only this pixel, from 0,0 at the top left; may be repeated; its values are printed\n"
+    "  --condition     a pixel may also differ by as much as it changes if its ray is moved by 2^-50 of the largest\n"
+    "                  coordinate, a few roundings\n"
+    "  --quad          in __float128 instead of long double, about fifty times slower\n"
+    "  --threads N     default: all processors\n"
+    "  --transfer FILE reads the transfer function from this file instead: opacities are saved in scenes as "
+    "extinction\n"
+    "  --output FILE   writes what was computed, zero where nothing was\n"
+    "Pixels behind which cells overlap, so that there is no right answer, are left out and counted.\n"
+    "--describe prints xmin xmax ymin ymax zmin zmax, lowest and highest finite value, x y z of a point inside a "
+    "cell,\n"
+    "and the number of cells.\n";
 
 struct Options {
   std::vector<std::string> paths;

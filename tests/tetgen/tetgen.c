@@ -16,7 +16,9 @@
 
 /* TetGen leaks its work space when it gives up: what the leak sanitizer asks for, unused without it. */
 TETCAST_API const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void) { return "leak:tetgenmesh\n"; }
+const char *__lsan_default_suppressions(void) {
+  return "leak:tetgenmesh\n";
+}
 
 /* ── surfaces ── */
 
@@ -403,13 +405,13 @@ static void refuse_text(const char *name, const char *text, TetcastStatus status
     fail_msg("\"%s\" should contain \"%s\" and \"%s\"", message, stem, expected);
 }
 
-#define BOX_POINTS "0 0 0 0\n1 2 0 0\n2 2 2 0\n3 0 2 0\n4 0 0 2\n5 2 0 2\n6 2 2 2\n7 0 2 2\n"
-#define SIDES "4 0 1 2 3\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n"
-#define INNER "8 .5 .5 .5\n9 1 .5 .5\n10 .5 1 .5\n11 .5 .5 1\n"
+#define BOX_POINTS  "0 0 0 0\n1 2 0 0\n2 2 2 0\n3 0 2 0\n4 0 0 2\n5 2 0 2\n6 2 2 2\n7 0 2 2\n"
+#define SIDES       "4 0 1 2 3\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n"
+#define INNER       "8 .5 .5 .5\n9 1 .5 .5\n10 .5 1 .5\n11 .5 .5 1\n"
 #define INNER_SIDES "3 8 9 10\n3 8 9 11\n3 9 10 11\n3 8 10 11\n"
 
 static const char cavity[] =
-  "# a box with a cavity\n12 3 0 0\n" BOX_POINTS INNER "\n10 0\n" SIDES INNER_SIDES "1\n0 .6 .6 .6\n0\n";
+    "# a box with a cavity\n12 3 0 0\n" BOX_POINTS INNER "\n10 0\n" SIDES INNER_SIDES "1\n0 .6 .6 .6\n0\n";
 
 static void test_smesh(void **state) {
   (void)state;
@@ -514,16 +516,18 @@ static void test_truncated_and_damaged(void **state) {
 
 int main(void) {
   const struct CMUnitTest surfaces[] = {
-    cmocka_unit_test(test_bounds_are_kept),    cmocka_unit_test(test_without_bounds_no_vertex_is_added),
-    cmocka_unit_test(test_cavities),           cmocka_unit_test(test_any_unit_of_length),
-    cmocka_unit_test(test_open_surfaces),      cmocka_unit_test(test_lines_and_stray_vertices_do_not_matter),
-    cmocka_unit_test(test_self_intersections), cmocka_unit_test(test_bad_values),
-    cmocka_unit_test(test_bad_arguments),      cmocka_unit_test(test_nothing_is_printed),
+      cmocka_unit_test(test_bounds_are_kept),    cmocka_unit_test(test_without_bounds_no_vertex_is_added),
+      cmocka_unit_test(test_cavities),           cmocka_unit_test(test_any_unit_of_length),
+      cmocka_unit_test(test_open_surfaces),      cmocka_unit_test(test_lines_and_stray_vertices_do_not_matter),
+      cmocka_unit_test(test_self_intersections), cmocka_unit_test(test_bad_values),
+      cmocka_unit_test(test_bad_arguments),      cmocka_unit_test(test_nothing_is_printed),
   };
   const struct CMUnitTest files[] = {
-    cmocka_unit_test(test_smesh),        cmocka_unit_test(test_poly),
-    cmocka_unit_test(test_node_and_ele), cmocka_unit_test(test_bad_files),
-    cmocka_unit_test(test_truncated_and_damaged),
+      cmocka_unit_test(test_smesh),
+      cmocka_unit_test(test_poly),
+      cmocka_unit_test(test_node_and_ele),
+      cmocka_unit_test(test_bad_files),
+      cmocka_unit_test(test_truncated_and_damaged),
   };
   return cmocka_run_group_tests(surfaces, set_up, tear_down) +
          cmocka_run_group_tests(files, make_folder, remove_folder);

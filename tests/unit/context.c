@@ -55,15 +55,24 @@ static TetcastStatus everything(Fixture *fixture, const Cube *cube, TetcastTrave
   const TetcastCamera camera = camera_of(2.1, 1.7, 3.3, 0.5, 0.5, 0.5);
   TetcastMeshHealth health;
   TetcastStatus status = tetcast_mesh_create(context, &mesh_desc, &mesh);
-  if (!status) status = tetcast_mesh_health(context, mesh, &health);
-  if (!status) status = tetcast_volume_create(context, mesh, &volume_desc, &volume);
-  if (!status) status = tetcast_field_create(context, &field_desc, &field);
-  if (!status) status = tetcast_scene_create(context, volume, &scene);
-  if (!status) status = tetcast_scene_set_field(scene, field);
-  if (!status) status = tetcast_scene_create_preset(scene, "magma", 0, 1, &transfer);
-  if (!status) status = tetcast_scene_set_transfer_function(scene, transfer);
-  if (!status) status = tetcast_frame_create(context, &frame_desc, &frame);
-  if (!status) status = tetcast_scene_render(scene, &camera, NULL, frame, NULL);
+  if (!status)
+    status = tetcast_mesh_health(context, mesh, &health);
+  if (!status)
+    status = tetcast_volume_create(context, mesh, &volume_desc, &volume);
+  if (!status)
+    status = tetcast_field_create(context, &field_desc, &field);
+  if (!status)
+    status = tetcast_scene_create(context, volume, &scene);
+  if (!status)
+    status = tetcast_scene_set_field(scene, field);
+  if (!status)
+    status = tetcast_scene_create_preset(scene, "magma", 0, 1, &transfer);
+  if (!status)
+    status = tetcast_scene_set_transfer_function(scene, transfer);
+  if (!status)
+    status = tetcast_frame_create(context, &frame_desc, &frame);
+  if (!status)
+    status = tetcast_scene_render(scene, &camera, NULL, frame, NULL);
   tetcast_frame_destroy(&frame);
   tetcast_scene_destroy(&scene);
   tetcast_transfer_function_destroy(&transfer);
@@ -108,9 +117,9 @@ static void any_allocation_may_fail(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(statuses_have_words),
-    cmocka_unit_test(contexts),
-    cmocka_unit_test(any_allocation_may_fail),
+      cmocka_unit_test(statuses_have_words),
+      cmocka_unit_test(contexts),
+      cmocka_unit_test(any_allocation_may_fail),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

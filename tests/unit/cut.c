@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Straight cells cut into tetrahedra: nothing missing, nothing twice, neighbours agree, however vertices are numbered. */
+/* Straight cells cut into tetrahedra: nothing missing, nothing twice, neighbours agree, however vertices are numbered.
+ */
 #include "cut_support.h"
 
 /* The faces of cells, counterclockwise from outside, ended by −1; the list by −2. */
-static const int hexahedron_faces[] = {0, 4, 7, 3, -1, 1, 2, 6, 5, -1, 0, 1, 5, 4, -1, 3, 7, 6, 2, -1, 0, 3, 2, 1, -1, 4, 5, 6, 7, -1, -2};
+static const int hexahedron_faces[] = {0, 4, 7, 3,  -1, 1, 2, 6, 5,  -1, 0, 1, 5, 4,  -1, 3,
+                                       7, 6, 2, -1, 0,  3, 2, 1, -1, 4,  5, 6, 7, -1, -2};
 
-/* Unit cubes side by side: hexahedra, voxels, pyramids to a middle point, some of them as two tetrahedra, polyhedra, a polyhedron of two
- * cubes; and columns along x of wedges. */
+/* Unit cubes side by side: hexahedra, voxels, pyramids to a middle point, some of them as two tetrahedra, polyhedra, a
+ * polyhedron of two cubes; and columns along x of wedges. */
 static void add_cubes(Build *build, int n, uint64_t *seed, bool jitter) {
   int64_t *at = malloc((size_t)((n + 1) * (n + 1) * (n + 1)) * sizeof *at);
 #define AT(i, j, k) at[(i) + (n + 1) * ((j) + (n + 1) * (k))]
@@ -14,7 +16,8 @@ static void add_cubes(Build *build, int n, uint64_t *seed, bool jitter) {
     for (int j = 0; j <= n; ++j) {
       for (int i = 0; i <= n; ++i) {
         double p[3] = {i, j, k};
-        for (int c = 0; c < 3 && jitter; ++c) p[c] += p[c] > 0 && p[c] < n ? 0.2 * (uniform(seed) - 0.5) : 0;
+        for (int c = 0; c < 3 && jitter; ++c)
+          p[c] += p[c] > 0 && p[c] < n ? 0.2 * (uniform(seed) - 0.5) : 0;
         AT(i, j, k) = build_point(build, p[0], p[1], p[2]);
       }
     }
@@ -51,10 +54,21 @@ static void add_cubes(Build *build, int n, uint64_t *seed, bool jitter) {
             }
           }
         } else {
-          static const int faces[] = {0, 4, 7, 3, -1, 8, 9, 11, 10, -1, 0, 1, 5, 4, -1, 1, 8, 10, 5, -1, 3, 7, 6, 2, -1, 2, 6, 11, 9, -1,
-                                      0, 3, 2, 1, -1, 1, 2, 9, 8, -1, 4, 5, 6, 7, -1, 5, 10, 11, 6, -1, -2};
+          static const int faces[] = {0,  4, 7,  3, -1, 8,  9, 11, 10, -1, 0,  1, 5,  4,  -1, 1,  8,
+                                      10, 5, -1, 3, 7,  6,  2, -1, 2,  6,  11, 9, -1, 0,  3,  2,  1,
+                                      -1, 1, 2,  9, 8,  -1, 4, 5,  6,  7,  -1, 5, 10, 11, 6,  -1, -2};
           ++i;
-          const int64_t w[12] = {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], AT(i + 1, j, k), AT(i + 1, j + 1, k), AT(i + 1, j, k + 1),
+          const int64_t w[12] = {v[0],
+                                 v[1],
+                                 v[2],
+                                 v[3],
+                                 v[4],
+                                 v[5],
+                                 v[6],
+                                 v[7],
+                                 AT(i + 1, j, k),
+                                 AT(i + 1, j + 1, k),
+                                 AT(i + 1, j, k + 1),
                                  AT(i + 1, j + 1, k + 1)};
           build_polyhedron(build, 12, w, faces, 2, seed);
         }
@@ -65,8 +79,8 @@ static void add_cubes(Build *build, int n, uint64_t *seed, bool jitter) {
   free(at);
 }
 
-/* A hexagon in the middle of six quadrilaterals, a pentagon, a triangle, a quadrilateral and a hexagon on four of these, in layers:
- * prisms of every kind, some as polyhedra; on top a tetrahedron and a pyramid. */
+/* A hexagon in the middle of six quadrilaterals, a pentagon, a triangle, a quadrilateral and a hexagon on four of
+ * these, in layers: prisms of every kind, some as polyhedra; on top a tetrahedron and a pyramid. */
 static void add_prisms(Build *build, int layers, uint64_t *seed) {
   enum { FLAT = 12 + 3 + 1 + 2 + 4 };
   double flat[FLAT][2];
@@ -87,7 +101,8 @@ static void add_prisms(Build *build, int layers, uint64_t *seed) {
                {4, 4, {{1.1, 0.4}, {0.9, 0.8}, {0.1, 0.8}, {-0.1, 0.4}}}};
   int polygon[11][6], sizes[11], count = 0, points = 12;
   sizes[count] = 6;
-  for (int k = 0; k < 6; ++k) polygon[count][k] = k;
+  for (int k = 0; k < 6; ++k)
+    polygon[count][k] = k;
   ++count;
   for (int k = 0; k < 6; ++k, ++count) {
     const int corners[4] = {k, 6 + k, 6 + (k + 1) % 6, (k + 1) % 6};
@@ -109,7 +124,8 @@ static void add_prisms(Build *build, int layers, uint64_t *seed) {
   }
   const int64_t first = build->point_count;
   for (int l = 0; l <= layers; ++l) {
-    for (int k = 0; k < points; ++k) build_point(build, flat[k][0], flat[k][1], l * 0.7 + 0.05 * flat[k][0]);
+    for (int k = 0; k < points; ++k)
+      build_point(build, flat[k][0], flat[k][1], l * 0.7 + 0.05 * flat[k][0]);
   }
   for (int l = 0; l < layers; ++l) {
     for (int c = 0; c < count; ++c) {
@@ -122,13 +138,16 @@ static void add_prisms(Build *build, int layers, uint64_t *seed) {
         v[k] = first + l * points + polygon[c][k];
         v[n + k] = v[k] + points;
       }
-      static const unsigned types[] = {TETCAST_CELL_WEDGE, TETCAST_CELL_HEXAHEDRON, TETCAST_CELL_PENTAGONAL_PRISM, TETCAST_CELL_HEXAGONAL_PRISM};
+      static const unsigned types[] = {TETCAST_CELL_WEDGE, TETCAST_CELL_HEXAHEDRON, TETCAST_CELL_PENTAGONAL_PRISM,
+                                       TETCAST_CELL_HEXAGONAL_PRISM};
       assert_true(area > 0);
       if (uniform(seed) < 0.3) {
         int faces[64], f = 0;
-        for (int k = 0; k < n; ++k) faces[f++] = n - 1 - k;
+        for (int k = 0; k < n; ++k)
+          faces[f++] = n - 1 - k;
         faces[f++] = -1;
-        for (int k = 0; k < n; ++k) faces[f++] = n + k;
+        for (int k = 0; k < n; ++k)
+          faces[f++] = n + k;
         faces[f++] = -1;
         for (int k = 0; k < n; ++k) {
           const int side[5] = {k, (k + 1) % n, n + (k + 1) % n, n + k, -1};
@@ -143,7 +162,8 @@ static void add_prisms(Build *build, int layers, uint64_t *seed) {
       if (l + 1 == layers && n <= 4) {
         double top[3] = {0, 0, (layers + 1) * 0.7};
         for (int k = 0; k < n; ++k) {
-          for (int d = 0; d < 2; ++d) top[d] += flat[polygon[c][k]][d] / n;
+          for (int d = 0; d < 2; ++d)
+            top[d] += flat[polygon[c][k]][d] / n;
         }
         int64_t w[5];
         memcpy(w, v + n, sizeof *w * (size_t)n);
@@ -159,8 +179,10 @@ static void test_mixed(void **state) {
   for (uint64_t round = 1; round <= 60; ++round) {
     uint64_t seed = round;
     Build build = {0};
-    if (round % 2) add_cubes(&build, 4, &seed, false);
-    else add_prisms(&build, 3, &seed);
+    if (round % 2)
+      add_cubes(&build, 4, &seed, false);
+    else
+      add_prisms(&build, 3, &seed);
     build_shuffle(&build, &seed);
     Result result = cut_build(&build, 1 + (int)(round % 3), 0);
     check_volumes(&build, &result, 1e-12);
@@ -168,7 +190,8 @@ static void test_mixed(void **state) {
     check_linear(&build, &result, &seed);
     assert_int_equal(result.boundary, round % 2 ? 2 * 6 * 16 : result.boundary);
     assert_int_equal(result.info.cells, build.cell_count);
-    if (!(round % 2)) assert_int_equal(result.info.centred, 0);
+    if (!(round % 2))
+      assert_int_equal(result.info.centred, 0);
     assert_int_equal(result.info.folded + result.info.open + result.info.inverted + result.info.collapsed, 0);
     assert_true(result.smallest > 1e-6); /* nothing flat, nothing turned over */
     result_release(&result);
@@ -198,11 +221,13 @@ static void test_uneven(void **state) {
 static void every_numbering(const Build *model, int64_t boundary) {
   const int n = (int)model->point_count;
   int order[8], limit = 1;
-  for (int k = 1; k <= n; ++k) limit *= k;
+  for (int k = 1; k <= n; ++k)
+    limit *= k;
   Build all = {0};
   for (int number = 0; number < limit; ++number) {
     int left[8], rest = number;
-    for (int k = 0; k < n; ++k) left[k] = k;
+    for (int k = 0; k < n; ++k)
+      left[k] = k;
     for (int k = n; k > 0; --k) {
       const int pick = rest % k;
       rest /= k;
@@ -224,7 +249,8 @@ static void every_numbering(const Build *model, int64_t boundary) {
 
 static void test_every_numbering(void **state) {
   (void)state;
-  static const double cube[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  static const double cube[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                    {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
   static const int64_t v[8] = {0, 1, 2, 3, 4, 5, 6, 7};
   const int corners[4] = {8, 8, 7, 8};
   for (int which = 0; which < 4; ++which) {
@@ -234,7 +260,8 @@ static void test_every_numbering(void **state) {
       const double *p = cube[k];
       build_point(&model, p[0] + 0.3 * p[1], p[1] + (which == 2 && k == 6 ? 0.2 : 0), p[2] * (which == 2 ? 1.5 : 1));
     }
-    if (which == 0) build_cell(&model, TETCAST_CELL_HEXAHEDRON, 8, v, 1);
+    if (which == 0)
+      build_cell(&model, TETCAST_CELL_HEXAHEDRON, 8, v, 1);
     if (which == 1) {
       const int64_t a[6] = {0, 3, 4, 1, 2, 5}, b[6] = {3, 7, 4, 2, 6, 5};
       build_cell(&model, TETCAST_CELL_WEDGE, 6, a, 0.5);
@@ -245,7 +272,8 @@ static void test_every_numbering(void **state) {
       build_cell(&model, TETCAST_CELL_WEDGE, 6, a, 0.75);
       build_cell(&model, TETCAST_CELL_PYRAMID, 5, b, -1);
     }
-    if (which == 3) build_polyhedron(&model, 8, v, hexahedron_faces, 1, &seed);
+    if (which == 3)
+      build_polyhedron(&model, 8, v, hexahedron_faces, 1, &seed);
     every_numbering(&model, which == 0 || which == 3 ? 12 : which == 1 ? 12 : 10);
     build_release(&model);
   }
@@ -254,14 +282,16 @@ static void test_every_numbering(void **state) {
 /* A hexahedron whose far corner no diagonal goes through needs five tetrahedra, any other six. */
 static void test_five_or_six(void **state) {
   (void)state;
-  static const double cube[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  static const double cube[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                    {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
   static const int64_t ascending[8] = {0, 1, 2, 3, 4, 5, 6, 7}, five[8] = {0, 3, 1, 4, 5, 2, 6, 7};
   for (int which = 0; which < 2; ++which) {
     const int64_t *v = which ? five : ascending;
     Build build = {0};
     for (int k = 0; k < 8; ++k) {
       int at = 0;
-      while (v[at] != k) ++at;
+      while (v[at] != k)
+        ++at;
       build_point(&build, cube[at][0], cube[at][1], cube[at][2]);
     }
     build_cell(&build, TETCAST_CELL_HEXAHEDRON, 8, v, 1);
@@ -283,16 +313,17 @@ static void test_collapsed(void **state) {
     int64_t v[8], points, boundary;
     double volume;
   } cases[] = {
-    {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {0, 1, 2, 2, 3, 4, 5, 5}, 6, 8, 0.5},
-    {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 1, 2, 3, 4, 4, 4, 4}, 5, 6, 1.0 / 3},
-    {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 1, 2, 2, 3, 3, 3, 3}, 4, 4, 1.0 / 6},
-    {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2, 2, 0, 1, 2, 2}, 3, 0, 0},
+      {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {0, 1, 2, 2, 3, 4, 5, 5}, 6, 8, 0.5},
+      {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 1, 2, 3, 4, 4, 4, 4}, 5, 6, 1.0 / 3},
+      {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 1, 2, 2, 3, 3, 3, 3}, 4, 4, 1.0 / 6},
+      {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2, 2, 0, 1, 2, 2}, 3, 0, 0},
   };
   for (int which = 0; which < 4; ++which) {
     for (uint64_t round = 1; round <= 50; ++round) {
       uint64_t seed = round;
       Build build = {0};
-      for (int64_t k = 0; k < cases[which].points; ++k) build_point(&build, cases[which].p[k][0], cases[which].p[k][1], cases[which].p[k][2]);
+      for (int64_t k = 0; k < cases[which].points; ++k)
+        build_point(&build, cases[which].p[k][0], cases[which].p[k][1], cases[which].p[k][2]);
       build_cell(&build, TETCAST_CELL_HEXAHEDRON, 8, cases[which].v, cases[which].volume);
       build_shuffle(&build, &seed);
       Result result = cut_build(&build, 1, 0);
@@ -315,12 +346,14 @@ static void test_misshapen(void **state) {
   for (uint64_t round = 1; round <= 400; ++round) {
     uint64_t seed = round;
     Build build = {0};
-    static const double cube[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    static const double cube[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                      {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
     static const int64_t v[8] = {0, 1, 2, 3, 4, 5, 6, 7};
     const double wild = 0.4 * (double)(round % 5);
     for (int k = 0; k < 8; ++k) {
       double p[3];
-      for (int d = 0; d < 3; ++d) p[d] = cube[k][d] + wild * (uniform(&seed) - 0.5);
+      for (int d = 0; d < 3; ++d)
+        p[d] = cube[k][d] + wild * (uniform(&seed) - 0.5);
       build_point(&build, round % 7 == 0 ? -p[0] : p[0], p[1], p[2]);
     }
     build_cell(&build, TETCAST_CELL_HEXAHEDRON, 8, v, 0);
@@ -331,8 +364,10 @@ static void test_misshapen(void **state) {
     assert_int_equal(result.boundary, 12);
     assert_true(fabs(result.volume - result.enclosed) < 1e-13);
     assert_int_equal(result.info.inverted, result.volume < 0);
-    if (!result.info.folded) assert_true(result.total <= fabs(result.volume) * (1 + 3e-6));
-    else assert_true(result.total > fabs(result.volume) * (1 + 1e-6));
+    if (!result.info.folded)
+      assert_true(result.total <= fabs(result.volume) * (1 + 3e-6));
+    else
+      assert_true(result.total > fabs(result.volume) * (1 + 1e-6));
     centred += result.info.centred > 0;
     folded += result.info.folded > 0;
     inverted += result.info.inverted > 0;
@@ -340,7 +375,8 @@ static void test_misshapen(void **state) {
     build_release(&build);
   }
   assert_true(centred > 10 && folded > 10 && inverted > 50);
-  print_message("of 400 wild hexahedra %d got a vertex inside, %d are folded, %d inverted\n", centred, folded, inverted);
+  print_message("of 400 wild hexahedra %d got a vertex inside, %d are folded, %d inverted\n", centred, folded,
+                inverted);
 }
 
 /* The same to the bit with any number of threads, in blocks of cells with and without added vertices. */
@@ -352,7 +388,8 @@ static void test_threads(void **state) {
     const int64_t before = build.point_count;
     add_cubes(&build, 7, &seed, false);
     for (int64_t k = before; k < build.point_count && i % 2; ++k) {
-      for (int d = 0; d < 3; ++d) build.points[k][d] += 0.9 * (uniform(&seed) - 0.5);
+      for (int d = 0; d < 3; ++d)
+        build.points[k][d] += 0.9 * (uniform(&seed) - 0.5);
     }
   }
   assert_true(build.cell_count > 3 * 4096);
@@ -379,7 +416,8 @@ static void test_arrays(void **state) {
   (void)state;
   Fixture fixture;
   assert_int_equal(fixture_begin(&fixture, 1, 0), TETCAST_OK);
-  float points[9][4] = {{0, 0, 0, 9}, {1, 0, 0, 9}, {1, 1, 0, 9}, {0, 1, 0, 9}, {0, 0, 1, 9}, {1, 0, 1, 9}, {1, 1, 1, 9}, {0, 1, 1, 9}, {0, 0, 2, 9}};
+  float points[9][4] = {{0, 0, 0, 9}, {1, 0, 0, 9}, {1, 1, 0, 9}, {0, 1, 0, 9}, {0, 0, 1, 9},
+                        {1, 0, 1, 9}, {1, 1, 1, 9}, {0, 1, 1, 9}, {0, 0, 2, 9}};
   uint64_t cells[3][10] = {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 1, 2, 3, 4, 5, 6, 7}, {0, 1, 2, 3, 4, 5, 6, 7}};
   const uint8_t hidden[3] = {1, 0, 2};
   TetcastCellsDesc desc = tetcast_cells_desc_default();
@@ -428,7 +466,8 @@ static void assert_refused(Fixture *fixture, const TetcastCellsDesc *desc, Tetca
   assert_int_equal(tetcast_cells_cut(fixture->context, desc, &cut), status);
   assert_null(cut);
   assert_int_equal(fixture->messages, 1);
-  if (!strstr(fixture->message, words)) fail_msg("'%s' lacks '%s'", fixture->message, words);
+  if (!strstr(fixture->message, words))
+    fail_msg("'%s' lacks '%s'", fixture->message, words);
 }
 
 static void test_refused(void **state) {
@@ -473,7 +512,8 @@ static void test_refused(void **state) {
   }
   nodes[9] = 1;
   /* A cube that nothing else is wrong with: what is beyond the vertices would make one. */
-  const double cube[9][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0, 1, 0}};
+  const double cube[9][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1},
+                             {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0, 1, 0}};
   int32_t narrow[8] = {0, 1, 2, 8, 4, 5, 6, 7};
   desc = good;
   desc.vertices.data = cube;
@@ -493,8 +533,11 @@ static void test_refused(void **state) {
   const struct {
     int64_t *at, value;
     const char *words;
-  } bad[] = {{&offsets[1], 13, "cell 0: its offsets"}, {&offsets[1], -1, "cell 0: its offsets"}, {&offsets[0], -1, "cell 0: its offsets"},
-             {&offsets[1], 7, "cell 0: 7 nodes"},      {&offsets[1], 9, "cell 1: 3 nodes"}};
+  } bad[] = {{&offsets[1], 13, "cell 0: its offsets"},
+             {&offsets[1], -1, "cell 0: its offsets"},
+             {&offsets[0], -1, "cell 0: its offsets"},
+             {&offsets[1], 7, "cell 0: 7 nodes"},
+             {&offsets[1], 9, "cell 1: 3 nodes"}};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {
     const int64_t was = *bad[i].at;
     *bad[i].at = bad[i].value;
@@ -515,8 +558,9 @@ static void test_refused(void **state) {
   tetcast_cut_destroy(&cut);
   const struct {
     int64_t *at, value;
-  } damage[] = {{&faces[0], 3},         {&faces[0], 5},  {&faces[0], INT64_MAX}, {&faces[0], -1}, {&faces[1], 2},  {&faces[1], 40},
-                {&faces[1], INT64_MAX}, {&faces[16], 4}, {&faces[16], -1},       {&places[1], 17}, {&places[1], -1}, {&places[1], 1}};
+  } damage[] = {{&faces[0], 3},   {&faces[0], 5},   {&faces[0], INT64_MAX}, {&faces[0], -1},
+                {&faces[1], 2},   {&faces[1], 40},  {&faces[1], INT64_MAX}, {&faces[16], 4},
+                {&faces[16], -1}, {&places[1], 17}, {&places[1], -1},       {&places[1], 1}};
   for (size_t i = 0; i < sizeof damage / sizeof *damage; ++i) {
     const int64_t was = *damage[i].at;
     *damage[i].at = damage[i].value;
@@ -547,7 +591,8 @@ static void test_open_polyhedra(void **state) {
   for (int open = 0; open < 2; ++open) {
     TetcastCut *cut;
     TetcastCutInfo info;
-    if (open) faces[16] = 2;
+    if (open)
+      faces[16] = 2;
     assert_int_equal(tetcast_cells_cut(fixture.context, &desc, &cut), TETCAST_OK);
     tetcast_cut_info(cut, &info);
     assert_int_equal(info.open, open);
@@ -567,11 +612,13 @@ static void test_memory(void **state) {
   uint64_t seed = 3;
   Build build = {0};
   add_cubes(&build, 3, &seed, false);
-  for (int64_t k = 0; k < build.point_count; ++k) build.points[k][0] += 0.9 * (uniform(&seed) - 0.5);
+  for (int64_t k = 0; k < build.point_count; ++k)
+    build.points[k][0] += 0.9 * (uniform(&seed) - 0.5);
   long fail_at = 1;
   for (bool failed = true; failed; ++fail_at) {
     Fixture fixture;
-    if (fixture_begin(&fixture, 1, fail_at)) continue;
+    if (fixture_begin(&fixture, 1, fail_at))
+      continue;
     const TetcastCellsDesc desc = build_desc(&build);
     TetcastCut *cut;
     const TetcastStatus status = tetcast_cells_cut(fixture.context, &desc, &cut);
@@ -590,10 +637,10 @@ static void test_memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_mixed),     cmocka_unit_test(test_uneven),    cmocka_unit_test(test_every_numbering),
-    cmocka_unit_test(test_five_or_six), cmocka_unit_test(test_collapsed), cmocka_unit_test(test_misshapen),
-    cmocka_unit_test(test_threads),   cmocka_unit_test(test_arrays),    cmocka_unit_test(test_refused),
-    cmocka_unit_test(test_open_polyhedra), cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_mixed),          cmocka_unit_test(test_uneven),    cmocka_unit_test(test_every_numbering),
+      cmocka_unit_test(test_five_or_six),    cmocka_unit_test(test_collapsed), cmocka_unit_test(test_misshapen),
+      cmocka_unit_test(test_threads),        cmocka_unit_test(test_arrays),    cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_open_polyhedra), cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

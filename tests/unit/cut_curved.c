@@ -1,25 +1,35 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Curved cells: their nodes are where VTK has them, neighbours share the points between, fields are as the shape functions say. */
+/* Curved cells: their nodes are where VTK has them, neighbours share the points between, fields are as the shape
+ * functions say. */
 #include "cut_support.h"
 
-/* Where VTK has the nodes of a cell of second order, in halves; the others are numbered by what it prints for each point, x fastest. */
-static const int second[27][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2}, {0, 2, 2}, {1, 0, 0},
-                                  {2, 1, 0}, {1, 2, 0}, {0, 1, 0}, {1, 0, 2}, {2, 1, 2}, {1, 2, 2}, {0, 1, 2}, {0, 0, 1}, {2, 0, 1},
-                                  {2, 2, 1}, {0, 2, 1}, {0, 1, 1}, {2, 1, 1}, {1, 0, 1}, {1, 2, 1}, {1, 1, 0}, {1, 1, 2}, {1, 1, 1}};
-static const int wedge[18][3] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {0, 2, 2}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
-                                 {1, 0, 2}, {1, 1, 2}, {0, 1, 2}, {0, 0, 1}, {2, 0, 1}, {0, 2, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+/* Where VTK has the nodes of a cell of second order, in halves; the others are numbered by what it prints for each
+ * point, x fastest. */
+static const int second[27][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2},
+                                  {0, 2, 2}, {1, 0, 0}, {2, 1, 0}, {1, 2, 0}, {0, 1, 0}, {1, 0, 2}, {2, 1, 2},
+                                  {1, 2, 2}, {0, 1, 2}, {0, 0, 1}, {2, 0, 1}, {2, 2, 1}, {0, 2, 1}, {0, 1, 1},
+                                  {2, 1, 1}, {1, 0, 1}, {1, 2, 1}, {1, 1, 0}, {1, 1, 2}, {1, 1, 1}};
+static const int wedge[18][3] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {0, 2, 2},
+                                 {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 2}, {1, 1, 2}, {0, 1, 2},
+                                 {0, 0, 1}, {2, 0, 1}, {0, 2, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
 static const int flat_wedge[12][3] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {0, 2, 2},
                                       {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 2}, {1, 1, 2}, {0, 1, 2}};
-static const int tetrahedron[10][3] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
-/* In sixths, of a pyramid from a side of a cube to its middle: corners, apex, the middles of the base's edges and of the base. */
-static const int pyramid[10][3] = {{0, 0, 0}, {6, 0, 0}, {6, 6, 0}, {0, 6, 0}, {3, 3, 3}, {3, 0, 0}, {6, 3, 0}, {3, 6, 0}, {0, 3, 0}, {3, 3, 0}};
+static const int tetrahedron[10][3] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 0, 0},
+                                       {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+/* In sixths, of a pyramid from a side of a cube to its middle: corners, apex, the middles of the base's edges and of
+ * the base. */
+static const int pyramid[10][3] = {{0, 0, 0}, {6, 0, 0}, {6, 6, 0}, {0, 6, 0}, {3, 3, 3},
+                                   {3, 0, 0}, {6, 3, 0}, {3, 6, 0}, {0, 3, 0}, {3, 3, 0}};
 static const signed char hexahedron343[80] = {
-  0, 8, 9, 1, 15, 56, 57, 10, 16, 58, 59, 11, 17, 60, 61, 12, 3, 13, 14, 2, 28, 48, 49, 30, 36, 68, 69, 42, 37, 70, 71, 43, 38, 72, 73, 44, 34, 52, 53, 32,
-  29, 50, 51, 31, 39, 74, 75, 45, 40, 76, 77, 46, 41, 78, 79, 47, 35, 54, 55, 33, 4, 18, 19, 5, 25, 62, 63, 20, 26, 64, 65, 21, 27, 66, 67, 22, 7, 23, 24, 6};
-static const signed char wedge34[50] = {0,  6,  7,  1,  11, 27, 8,  10, 9,  2,  18, 29, 30, 21, 42, 47, 35, 41, 36, 24, 19, 31, 32, 22, 44,
-                                        48, 37, 43, 38, 25, 20, 33, 34, 23, 46, 49, 39, 45, 40, 26, 3,  12, 13, 4,  17, 28, 14, 16, 15, 5};
-static const signed char tetrahedron5[56] = {0,  4,  5,  6,  7,  1,  15, 46, 51, 48, 8,  14, 49, 50, 9,  13, 47, 10, 12, 11, 2,  16, 28, 31, 29, 20, 40, 52,
-                                             53, 36, 45, 54, 39, 42, 34, 24, 17, 33, 32, 21, 43, 55, 38, 44, 37, 25, 18, 30, 22, 41, 35, 26, 19, 23, 27, 3};
+    0,  8,  9,  1,  15, 56, 57, 10, 16, 58, 59, 11, 17, 60, 61, 12, 3,  13, 14, 2,  28, 48, 49, 30, 36, 68, 69,
+    42, 37, 70, 71, 43, 38, 72, 73, 44, 34, 52, 53, 32, 29, 50, 51, 31, 39, 74, 75, 45, 40, 76, 77, 46, 41, 78,
+    79, 47, 35, 54, 55, 33, 4,  18, 19, 5,  25, 62, 63, 20, 26, 64, 65, 21, 27, 66, 67, 22, 7,  23, 24, 6};
+static const signed char wedge34[50] = {0,  6,  7,  1,  11, 27, 8,  10, 9,  2,  18, 29, 30, 21, 42, 47, 35,
+                                        41, 36, 24, 19, 31, 32, 22, 44, 48, 37, 43, 38, 25, 20, 33, 34, 23,
+                                        46, 49, 39, 45, 40, 26, 3,  12, 13, 4,  17, 28, 14, 16, 15, 5};
+static const signed char tetrahedron5[56] = {0,  4,  5,  6,  7,  1,  15, 46, 51, 48, 8,  14, 49, 50, 9,  13, 47, 10, 12,
+                                             11, 2,  16, 28, 31, 29, 20, 40, 52, 53, 36, 45, 54, 39, 42, 34, 24, 17, 33,
+                                             32, 21, 43, 55, 38, 44, 37, 25, 18, 30, 22, 41, 35, 26, 19, 23, 27, 3};
 
 typedef struct Kind {
   unsigned type;
@@ -58,15 +68,23 @@ static void place_node(const Kind *kind, int i, double at[3]) {
       at[d] = place[d] / 12.0;
     return;
   }
-  const signed char *number = kind->nodes == 80 ? hexahedron343 : kind->nodes == 50 ? wedge34 : kind->nodes == 56 ? tetrahedron5 : NULL;
+  const signed char *number = kind->nodes == 80   ? hexahedron343
+                              : kind->nodes == 50 ? wedge34
+                              : kind->nodes == 56 ? tetrahedron5
+                                                  : NULL;
   if (kind->shape == 5) {
     const bool side = i >= 9 && i < 13; /* in the middle of an edge to the apex */
-    for (int d = 0; d < 3; ++d) at[d] = side ? (pyramid[i - 9][d] + pyramid[4][d]) / 12.0 : pyramid[i == 13 ? 9 : i][d] / 6.0;
+    for (int d = 0; d < 3; ++d)
+      at[d] = side ? (pyramid[i - 9][d] + pyramid[4][d]) / 12.0 : pyramid[i == 13 ? 9 : i][d] / 6.0;
     return;
   }
   if (!number) {
-    const int(*table)[3] = kind->shape == 8 ? second : kind->shape == 4 ? tetrahedron : kind->nodes == 12 ? flat_wedge : wedge;
-    for (int d = 0; d < 3; ++d) at[d] = table[i][d] / 2.0;
+    const int(*table)[3] = kind->shape == 8    ? second
+                           : kind->shape == 4  ? tetrahedron
+                           : kind->nodes == 12 ? flat_wedge
+                                               : wedge;
+    for (int d = 0; d < 3; ++d)
+      at[d] = table[i][d] / 2.0;
     return;
   }
   const int *n = kind->order;
@@ -74,9 +92,12 @@ static void place_node(const Kind *kind, int i, double at[3]) {
   for (int z = 0; z <= n[2]; ++z) {
     for (int y = 0; y <= n[1]; ++y) {
       for (int x = 0; x <= n[0]; ++x) {
-        if (kind->shape == 6 && x + y > n[0]) continue;
-        if (kind->shape == 4 && x + y + z > n[0]) continue;
-        if (number[at_number++] != i) continue;
+        if (kind->shape == 6 && x + y > n[0])
+          continue;
+        if (kind->shape == 4 && x + y + z > n[0])
+          continue;
+        if (number[at_number++] != i)
+          continue;
         at[0] = (double)x / n[0];
         at[1] = (double)y / n[1];
         at[2] = (double)z / n[2];
@@ -91,19 +112,24 @@ static void place_node(const Kind *kind, int i, double at[3]) {
 static int64_t point_at(Build *build, const double p[3]) {
   for (int64_t i = 0; i < build->point_count; ++i) {
     const double *q = build->points[i];
-    if (fabs(p[0] - q[0]) + fabs(p[1] - q[1]) + fabs(p[2] - q[2]) < 1e-9) return i;
+    if (fabs(p[0] - q[0]) + fabs(p[1] - q[1]) + fabs(p[2] - q[2]) < 1e-9)
+      return i;
   }
   return build_point(build, p[0], p[1], p[2]);
 }
 
 /* A curved cell: its own coordinates are mapped by origin + x a + y b + z c. */
-static void add_curved(Build *build, const Kind *kind, const double origin[3], const double a[3], const double b[3], const double c[3], double volume) {
+static void add_curved(Build *build, const Kind *kind, const double origin[3], const double a[3], const double b[3],
+                       const double c[3], double volume) {
   int64_t nodes[80];
   for (int i = 0; i < kind->nodes; ++i) {
     double t[3] = {0, 0, 0}, p[3];
-    if (i < 14 || kind->shape != 5) place_node(kind, i, t);
-    for (int d = 0; d < 3; ++d) p[d] = origin[d] + t[0] * a[d] + t[1] * b[d] + t[2] * c[d];
-    nodes[i] = i >= 14 && kind->shape == 5 ? build_point(build, 77, 77, 77) : point_at(build, p); /* those are not looked at */
+    if (i < 14 || kind->shape != 5)
+      place_node(kind, i, t);
+    for (int d = 0; d < 3; ++d)
+      p[d] = origin[d] + t[0] * a[d] + t[1] * b[d] + t[2] * c[d];
+    nodes[i] =
+        i >= 14 && kind->shape == 5 ? build_point(build, 77, 77, 77) : point_at(build, p); /* those are not looked at */
   }
   build_cell(build, kind->type, kind->nodes, nodes, volume);
 }
@@ -112,7 +138,8 @@ static void add_curved(Build *build, const Kind *kind, const double origin[3], c
 static void add_cube(Build *build, const Kind *kind, int cube) {
   static const int edge[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
   const double o[3] = {cube, 0, 0}, e[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  if (kind->shape == 8) add_curved(build, kind, o, e[0], e[1], e[2], 1);
+  if (kind->shape == 8)
+    add_curved(build, kind, o, e[0], e[1], e[2], 1);
   if (kind->shape == 6) { /* triangles at the ends along z, mirrored in the second */
     const double far[3] = {cube + 1, 1, 0}, back[2][3] = {{-1, 0, 0}, {0, -1, 0}};
     add_curved(build, kind, o, e[0], e[1], e[2], 0.5);
@@ -122,7 +149,8 @@ static void add_cube(Build *build, const Kind *kind, int cube) {
     for (int k = 0; k < 6; ++k) {
       double to[3][3] = {{0}};
       for (int step = 0; step < 3; ++step) {
-        for (int later = step; later < 3; ++later) to[later][edge[k][step]] = 1;
+        for (int later = step; later < 3; ++later)
+          to[later][edge[k][step]] = 1;
       }
       const bool even = k < 3;
       add_curved(build, kind, o, to[0], even ? to[1] : to[2], even ? to[2] : to[1], 1.0 / 6);
@@ -170,7 +198,8 @@ static void test_pairs(void **state) {
         build_shuffle(&build, &seed);
         double orders[64][3];
         for (int64_t i = 0; i < build.cell_count; ++i) {
-          for (int d = 0; d < 3; ++d) orders[i][d] = kinds[k].order[d];
+          for (int d = 0; d < 3; ++d)
+            orders[i][d] = kinds[k].order[d];
         }
         TetcastCellsDesc desc = build_desc(&build);
         desc.orders = (TetcastArray){orders, TETCAST_TYPE_FLOAT64, build.cell_count, 0};
@@ -178,12 +207,16 @@ static void test_pairs(void **state) {
         Result result = cut_desc(&desc, 1 + (int)(round % 2));
         check_faces(&result);
         check_linear(&build, &result, &seed);
-        if (!bent) check_volumes(&build, &result, 1e-12);
-        if (!bent) assert_true(result.smallest > 1e-6);
+        if (!bent)
+          check_volumes(&build, &result, 1e-12);
+        if (!bent)
+          assert_true(result.smallest > 1e-6);
         assert_int_equal(result.boundary, boundary_of(&kinds[k], subdivisions[s]));
         assert_int_equal(result.info.curved, build.cell_count);
         assert_int_equal(result.info.folded + result.info.inverted + result.info.collapsed, 0);
-        assert_int_equal(result.info.segments[1], subdivisions[s] ? subdivisions[s] : kinds[k].nodes == 80 || kinds[k].nodes == 50 ? 4 : kinds[k].order[0]);
+        assert_int_equal(result.info.segments[1], subdivisions[s]                                ? subdivisions[s]
+                                                  : kinds[k].nodes == 80 || kinds[k].nodes == 50 ? 4
+                                                                                                 : kinds[k].order[0]);
         result_release(&result);
         build_release(&build);
       }
@@ -199,7 +232,8 @@ static void test_mixed(void **state) {
     for (int subdivision = 0; subdivision <= 6; ++subdivision) {
       uint64_t seed = (uint64_t)subdivision + 1;
       Build build = {0};
-      for (int cube = 0; cube < 4; ++cube) add_cube(&build, &kinds[rows[row][cube]], cube);
+      for (int cube = 0; cube < 4; ++cube)
+        add_cube(&build, &kinds[rows[row][cube]], cube);
       build_shuffle(&build, &seed);
       Result result = cut_build(&build, 1, subdivision);
       check_volumes(&build, &result, 1e-12);
@@ -212,23 +246,29 @@ static void test_mixed(void **state) {
   }
 }
 
-static double quadratic(const double p[3]) { return 1 + p[0] * p[0] - 2 * p[0] * p[1] + 3 * p[2] * p[2] + p[1] * p[2] - p[1]; }
+static double quadratic(const double p[3]) {
+  return 1 + p[0] * p[0] - 2 * p[0] * p[1] + 3 * p[2] * p[2] + p[1] * p[2] - p[1];
+}
 
-/* Shape functions of second order and above have every quadratic function exactly, so it is there at points that are added. */
+/* Shape functions of second order and above have every quadratic function exactly, so it is there at points that are
+ * added. */
 static void test_shape_functions(void **state) {
   (void)state;
   for (int k = 0; k < KINDS; ++k) {
     const Kind *kind = &kinds[k];
     const bool bezier = kind->type >= TETCAST_CELL_BEZIER_TETRAHEDRON;
-    if (bezier || kind->type == TETCAST_CELL_QUADRATIC_LINEAR_WEDGE) continue;
+    if (bezier || kind->type == TETCAST_CELL_QUADRATIC_LINEAR_WEDGE)
+      continue;
     for (int subdivision = 0; subdivision <= 7; ++subdivision) {
       Build build = {0};
       add_pair(&build, kind);
       double orders[64][3], values[1024], added[20000];
       for (int64_t i = 0; i < build.cell_count; ++i) {
-        for (int d = 0; d < 3; ++d) orders[i][d] = kind->order[d];
+        for (int d = 0; d < 3; ++d)
+          orders[i][d] = kind->order[d];
       }
-      for (int64_t i = 0; i < build.point_count; ++i) values[i] = quadratic(build.points[i]);
+      for (int64_t i = 0; i < build.point_count; ++i)
+        values[i] = quadratic(build.points[i]);
       TetcastCellsDesc desc = build_desc(&build);
       desc.orders = (TetcastArray){orders, TETCAST_TYPE_FLOAT64, build.cell_count, 0};
       desc.subdivision = subdivision;
@@ -238,7 +278,8 @@ static void test_shape_functions(void **state) {
       assert_true(tetcast_cut_interpolate(result.cut, &array, 1, added));
       for (int64_t i = 0; i < result.info.added_vertices; ++i) {
         const double expected = quadratic(result.points[build.point_count + i]);
-        if (fabs(added[i] - expected) > 1e-11) fail_msg("type %u, subdivision %d: %g, not %g", kind->type, subdivision, added[i], expected);
+        if (fabs(added[i] - expected) > 1e-11)
+          fail_msg("type %u, subdivision %d: %g, not %g", kind->type, subdivision, added[i], expected);
       }
       result_release(&result);
       build_release(&build);

@@ -14,7 +14,8 @@ typedef struct Build {
 } Build;
 
 static inline void *enlarged(void *array, int64_t count, size_t size) {
-  if (count & (count - 1)) return array; /* at powers of two */
+  if (count & (count - 1))
+    return array; /* at powers of two */
   return realloc(array, (size_t)(count ? 2 * count : 1) * size);
 }
 
@@ -52,18 +53,21 @@ static inline void build_face_value(Build *build, int64_t value) {
 }
 
 /* `faces`: places in `nodes`, −1 after each face, −2 at the end; some are turned over, and all begin somewhere. */
-static inline void build_polyhedron(Build *build, int64_t count, const int64_t *nodes, const int *faces, double volume, uint64_t *seed) {
+static inline void build_polyhedron(Build *build, int64_t count, const int64_t *nodes, const int *faces, double volume,
+                                    uint64_t *seed) {
   build_cell(build, TETCAST_CELL_POLYHEDRON, count, nodes, volume);
   build->places[build->cell_count - 1] = build->face_count;
   const int64_t head = build->face_count;
   build_face_value(build, 0);
   for (; *faces != -2; ++faces) {
     int size = 0;
-    while (faces[size] != -1) ++size;
+    while (faces[size] != -1)
+      ++size;
     build_face_value(build, size);
     const int begin = (int)(size * uniform(seed));
     const bool turned = uniform(seed) < 0.4;
-    for (int k = 0; k < size; ++k) build_face_value(build, nodes[faces[turned ? (begin + size - k) % size : (begin + k) % size]]);
+    for (int k = 0; k < size; ++k)
+      build_face_value(build, nodes[faces[turned ? (begin + size - k) % size : (begin + k) % size]]);
     faces += size;
     ++build->faces[head];
   }
@@ -74,7 +78,8 @@ static inline void renumber_faces(int64_t *faces, int64_t count, const int64_t *
     const int64_t n = faces[at++];
     for (int64_t face = 0; face < n; ++face) {
       const int64_t size = faces[at++];
-      for (int64_t k = 0; k < size; ++k, ++at) faces[at] = number[faces[at]];
+      for (int64_t k = 0; k < size; ++k, ++at)
+        faces[at] = number[faces[at]];
     }
   }
 }
@@ -82,7 +87,8 @@ static inline void renumber_faces(int64_t *faces, int64_t count, const int64_t *
 /* Appends a copy whose point k becomes the order[k]-th of its own. */
 static inline void build_append(Build *build, const Build *model, const int *order) {
   const int64_t first = build->point_count, face_first = build->face_count;
-  for (int64_t k = 0; k < model->point_count; ++k) build_point(build, 0, 0, 0);
+  for (int64_t k = 0; k < model->point_count; ++k)
+    build_point(build, 0, 0, 0);
   int64_t number[8];
   for (int64_t k = 0; k < model->point_count; ++k) {
     number[k] = first + order[k];
@@ -91,12 +97,16 @@ static inline void build_append(Build *build, const Build *model, const int *ord
   for (int64_t i = 0; i < model->cell_count; ++i) {
     int64_t nodes[8];
     const int64_t count = model->offsets[i + 1] - model->offsets[i];
-    for (int64_t k = 0; k < count; ++k) nodes[k] = number[model->nodes[model->offsets[i] + k]];
+    for (int64_t k = 0; k < count; ++k)
+      nodes[k] = number[model->nodes[model->offsets[i] + k]];
     build_cell(build, model->types[i], count, nodes, model->volumes[i]);
-    if (model->places[i] >= 0) build->places[build->cell_count - 1] = face_first + model->places[i];
+    if (model->places[i] >= 0)
+      build->places[build->cell_count - 1] = face_first + model->places[i];
   }
-  for (int64_t k = 0; k < model->face_count; ++k) build_face_value(build, model->faces[k]);
-  if (model->face_count) renumber_faces(build->faces + face_first, model->face_count, number);
+  for (int64_t k = 0; k < model->face_count; ++k)
+    build_face_value(build, model->faces[k]);
+  if (model->face_count)
+    renumber_faces(build->faces + face_first, model->face_count, number);
 }
 
 /* Numbers all points anew, at random. */
@@ -109,9 +119,11 @@ static inline void build_shuffle(Build *build, uint64_t *seed) {
     number[k] = number[other];
     number[other] = k;
   }
-  for (int64_t k = 0; k < n; ++k) memcpy(points[number[k]], build->points[k], sizeof *points);
+  for (int64_t k = 0; k < n; ++k)
+    memcpy(points[number[k]], build->points[k], sizeof *points);
   memcpy(build->points, points, (size_t)n * sizeof *points);
-  for (int64_t k = 0; k < build->node_count; ++k) build->nodes[k] = number[build->nodes[k]];
+  for (int64_t k = 0; k < build->node_count; ++k)
+    build->nodes[k] = number[build->nodes[k]];
   renumber_faces(build->faces, build->face_count, number);
   free(points);
   free(number);
@@ -147,12 +159,12 @@ typedef struct Result {
   Fixture *fixture;
   TetcastCut *cut;
   TetcastCutInfo info;
-  const int32_t *tets; /* [tetrahedra][4] */
+  const int32_t *tets;           /* [tetrahedra][4] */
   int64_t point_count, boundary; /* with those added; faces of one tetrahedron */
   double (*points)[3];
-  Face *faces;                  /* of the boundary */
+  Face *faces;                    /* of the boundary */
   double volume, total, smallest; /* signed, absolute, and of the smallest, signed */
-  double enclosed;              /* by the boundary */
+  double enclosed;                /* by the boundary */
 } Result;
 
 static inline double determinant(const double *o, const double *a, const double *b, const double *c) {
@@ -171,7 +183,8 @@ static inline Result cut_desc(const TetcastCellsDesc *desc, int threads) {
   memset(&result, 0, sizeof result);
   result.fixture = malloc(sizeof *result.fixture);
   assert_int_equal(fixture_begin(result.fixture, threads, 0), TETCAST_OK);
-  if (tetcast_cells_cut(result.fixture->context, desc, &result.cut)) fail_msg("%s", result.fixture->message);
+  if (tetcast_cells_cut(result.fixture->context, desc, &result.cut))
+    fail_msg("%s", result.fixture->message);
   tetcast_cut_info(result.cut, &result.info);
   const TetcastArray tets = tetcast_cut_tetrahedra(result.cut);
   assert_int_equal(tets.count, result.info.tetrahedra);
@@ -184,7 +197,8 @@ static inline Result cut_desc(const TetcastCellsDesc *desc, int threads) {
   assert_true(tetcast_cut_interpolate(result.cut, &desc->vertices, 3, result.points[n]));
   result.smallest = INFINITY;
   for (int64_t i = 0; i < tets.count; ++i) {
-    for (int k = 0; k < 4; ++k) assert_in_range(result.tets[4 * i + k], 0, result.point_count - 1);
+    for (int k = 0; k < 4; ++k)
+      assert_in_range(result.tets[4 * i + k], 0, result.point_count - 1);
     const double volume = volume_of_tet(&result, i);
     result.volume += volume;
     result.total += fabs(volume);
@@ -210,13 +224,15 @@ static inline void result_release(Result *result) {
 static inline int compare_faces(const void *a, const void *b) {
   for (int k = 0; k < 3; ++k) {
     const int32_t x = ((const Face *)a)->v[k], y = ((const Face *)b)->v[k];
-    if (x != y) return x < y ? -1 : 1;
+    if (x != y)
+      return x < y ? -1 : 1;
   }
   return 0;
 }
 
 static inline void swap_if_above(int32_t *a, int32_t *b) {
-  if (*a <= *b) return;
+  if (*a <= *b)
+    return;
   const int32_t swap = *a;
   *a = *b;
   *b = swap;
@@ -229,7 +245,8 @@ static inline void check_faces(Result *result) {
   Face *faces = malloc((size_t)(count + 1) * sizeof *faces);
   for (int64_t i = 0; i < count; ++i) {
     const int32_t *t = result->tets + i / 4 * 4;
-    for (int k = 0; k < 3; ++k) faces[i].v[k] = faces[i].way[k] = t[face[i % 4][k]];
+    for (int k = 0; k < 3; ++k)
+      faces[i].v[k] = faces[i].way[k] = t[face[i % 4][k]];
     int32_t *v = faces[i].v;
     swap_if_above(&v[0], &v[1]);
     swap_if_above(&v[1], &v[2]);
@@ -241,16 +258,19 @@ static inline void check_faces(Result *result) {
   result->enclosed = 0;
   for (int64_t i = 0, next; i < count; i = next) {
     next = i + 1;
-    while (next < count && compare_faces(&faces[i], &faces[next]) == 0) ++next;
+    while (next < count && compare_faces(&faces[i], &faces[next]) == 0)
+      ++next;
     assert_in_range(next - i, 1, 2);
     const int32_t *a = faces[i].way, *b = faces[next - 1].way;
     if (next - i == 2) { /* one clockwise, one counterclockwise */
       int k = 0;
-      while (b[k] != a[0]) ++k;
+      while (b[k] != a[0])
+        ++k;
       assert_true(b[(k + 1) % 3] == a[2] && b[(k + 2) % 3] == a[1]);
     } else {
       faces[result->boundary++] = faces[i];
-      result->enclosed += determinant(result->points[0], result->points[a[0]], result->points[a[1]], result->points[a[2]]) / 6;
+      result->enclosed +=
+          determinant(result->points[0], result->points[a[0]], result->points[a[1]], result->points[a[2]]) / 6;
     }
   }
   result->faces = faces;
@@ -261,7 +281,8 @@ static inline void check_volumes(const Build *build, const Result *result, doubl
   double *sum = calloc((size_t)build->cell_count, sizeof *sum);
   const int32_t *source = tetcast_cut_sources(result->cut).data;
   for (int64_t i = 0; i < result->info.tetrahedra; ++i) {
-    if (i > 0) assert_true(source[i] >= source[i - 1]);
+    if (i > 0)
+      assert_true(source[i] >= source[i - 1]);
     assert_in_range(source[i], 0, build->cell_count - 1);
     sum[source[i]] += volume_of_tet(result, i);
   }
@@ -275,9 +296,10 @@ static inline void check_volumes(const Build *build, const Result *result, doubl
 
 /* The boundary is cut by the diagonals through the smallest vertex of each quadrilateral. */
 static inline void check_diagonals(const Build *build, const Result *result) {
-  static const int quads[3][6][4] = {{{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}},
-                                     {{0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}},
-                                     {{0, 1, 2, 3}}};
+  static const int quads[3][6][4] = {
+      {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}},
+      {{0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}},
+      {{0, 1, 2, 3}}};
   for (int64_t i = 0; i < build->cell_count; ++i) {
     const int64_t *v = build->nodes + build->offsets[i];
     const unsigned type = build->types[i];
@@ -285,17 +307,21 @@ static inline void check_diagonals(const Build *build, const Result *result) {
     for (int q = 0; q < (kind == 0 ? 6 : kind == 1 ? 3 : 1); ++q) {
       const int *quad = quads[kind][q];
       int least = 0;
-      for (int k = 1; k < 4; ++k) least = v[quad[k]] < v[quad[least]] ? k : least;
+      for (int k = 1; k < 4; ++k)
+        least = v[quad[k]] < v[quad[least]] ? k : least;
       for (int half = 0; half < 2; ++half) { /* without the diagonal's ends: present; with the other diagonal: not */
         for (int wrong = 0; wrong < 2; ++wrong) {
           const int a = least + wrong, corner[3] = {a % 4, (a + 1 + half) % 4, (a + 2 + half) % 4};
           Face face;
-          for (int k = 0; k < 3; ++k) face.v[k] = (int32_t)v[quad[corner[k]]];
+          for (int k = 0; k < 3; ++k)
+            face.v[k] = (int32_t)v[quad[corner[k]]];
           swap_if_above(&face.v[0], &face.v[1]);
           swap_if_above(&face.v[1], &face.v[2]);
           swap_if_above(&face.v[0], &face.v[1]);
-          const bool found = bsearch(&face, result->faces, (size_t)result->boundary, sizeof face, compare_faces) != NULL;
-          if (wrong) assert_false(found);
+          const bool found =
+              bsearch(&face, result->faces, (size_t)result->boundary, sizeof face, compare_faces) != NULL;
+          if (wrong)
+            assert_false(found);
         }
       }
     }
@@ -307,16 +333,19 @@ static inline void check_linear(const Build *build, const Result *result, uint64
   const double g[4] = {1.5, -0.75, 2, 3};
   const int64_t n = build->point_count;
   double *values = malloc((size_t)result->point_count * sizeof *values);
-  for (int64_t i = 0; i < n; ++i) values[i] = g[0] * build->points[i][0] + g[1] * build->points[i][1] + g[2] * build->points[i][2] + g[3];
+  for (int64_t i = 0; i < n; ++i)
+    values[i] = g[0] * build->points[i][0] + g[1] * build->points[i][1] + g[2] * build->points[i][2] + g[3];
   const TetcastArray array = {values, TETCAST_TYPE_FLOAT64, n, 0};
   assert_true(tetcast_cut_interpolate(result->cut, &array, 1, values + n));
   for (int i = 0; i < 200 && result->info.tetrahedra; ++i) {
     const int32_t *t = result->tets + 4 * (int64_t)((double)result->info.tetrahedra * uniform(seed));
     double share[4], sum = 0, p[3] = {0}, value = 0;
-    for (int k = 0; k < 4; ++k) sum += share[k] = uniform(seed) + 1e-3;
+    for (int k = 0; k < 4; ++k)
+      sum += share[k] = uniform(seed) + 1e-3;
     for (int k = 0; k < 4; ++k) {
       value += share[k] / sum * values[t[k]];
-      for (int d = 0; d < 3; ++d) p[d] += share[k] / sum * result->points[t[k]][d];
+      for (int d = 0; d < 3; ++d)
+        p[d] += share[k] / sum * result->points[t[k]][d];
     }
     assert_true(fabs(value - (g[0] * p[0] + g[1] * p[1] + g[2] * p[2] + g[3])) < 1e-12 * (1 + fabs(value)));
   }

@@ -5,8 +5,8 @@
 #include <float.h>
 
 enum { W = 24, H = 18, PIXELS = W * H, MOST = 8 };
-static const uint32_t all_channels =
-  TETCAST_CHANNEL_RADIANCE | TETCAST_CHANNEL_OPTICAL_DEPTH | TETCAST_CHANNEL_TRANSMITTANCE | TETCAST_CHANNEL_PATH_LENGTH;
+static const uint32_t all_channels = TETCAST_CHANNEL_RADIANCE | TETCAST_CHANNEL_OPTICAL_DEPTH |
+                                     TETCAST_CHANNEL_TRANSMITTANCE | TETCAST_CHANNEL_PATH_LENGTH;
 
 /* Values of one coefficient. */
 typedef struct Values {
@@ -25,7 +25,8 @@ typedef struct World {
 static void world_begin(World *world, int n, double jitter, double scale, TetcastTraversal traversal, int threads) {
   assert_int_equal(fixture_begin(&world->fixture, threads, 0), TETCAST_OK);
   world->cube = cube_create(n, jitter);
-  for (int64_t i = 0; i < 3 * world->cube.vertex_count; ++i) world->cube.vertices[i] *= scale;
+  for (int64_t i = 0; i < 3 * world->cube.vertex_count; ++i)
+    world->cube.vertices[i] *= scale;
   TetcastMesh *mesh = cube_mesh(world->fixture.context, &world->cube);
   world->volume = volume_of(world->fixture.context, mesh, traversal);
   tetcast_mesh_destroy(&mesh);
@@ -39,15 +40,16 @@ static void world_end(World *world) {
   fixture_end(&world->fixture);
 }
 
-static TetcastStatus set(World *world, const Values *extinction, int extinction_count, const Values *emission, int emission_count) {
+static TetcastStatus set(World *world, const Values *extinction, int extinction_count, const Values *emission,
+                         int emission_count) {
   TetcastField *fields[2][MOST];
   const Values *const values[2] = {extinction, emission};
   const int counts[2] = {extinction_count, emission_count};
   for (int l = 0; l < 2; ++l) {
     for (int i = 0; i < counts[l]; ++i) {
       const bool point = values[l][i].association == TETCAST_POINT;
-      fields[l][i] = field_of(world->fixture.context, values[l][i].data, point ? world->cube.vertex_count : world->cube.cell_count,
-                              values[l][i].association);
+      fields[l][i] = field_of(world->fixture.context, values[l][i].data,
+                              point ? world->cube.vertex_count : world->cube.cell_count, values[l][i].association);
     }
   }
   TetcastCoefficientsDesc desc = tetcast_coefficients_desc_default();
@@ -57,7 +59,8 @@ static TetcastStatus set(World *world, const Values *extinction, int extinction_
   desc.emission_count = emission_count;
   const TetcastStatus status = tetcast_scene_set_coefficients(world->scene, &desc);
   for (int l = 0; l < 2; ++l) {
-    for (int i = 0; i < counts[l]; ++i) tetcast_field_destroy(&fields[l][i]);
+    for (int i = 0; i < counts[l]; ++i)
+      tetcast_field_destroy(&fields[l][i]);
   }
   return status;
 }
@@ -70,14 +73,18 @@ static void set_one(World *world, const double *extinction, const double *emissi
 
 static double *constant(int64_t count, double value) {
   double *values = malloc((size_t)count * sizeof *values);
-  for (int64_t i = 0; i < count; ++i) values[i] = value;
+  for (int64_t i = 0; i < count; ++i)
+    values[i] = value;
   return values;
 }
 
 /* Looks down at the cube from above, in parallel rays, with a margin around it. */
 static TetcastCamera above(double scale) {
-  return (TetcastCamera){.eye = {0.5 * scale, 0.5 * scale, 3 * scale}, .target = {0.5 * scale, 0.5 * scale, 0}, .up = {0, 1, 0},
-                         .projection = TETCAST_ORTHOGRAPHIC, .height = 1.3 * scale};
+  return (TetcastCamera){.eye = {0.5 * scale, 0.5 * scale, 3 * scale},
+                         .target = {0.5 * scale, 0.5 * scale, 0},
+                         .up = {0, 1, 0},
+                         .projection = TETCAST_ORTHOGRAPHIC,
+                         .height = 1.3 * scale};
 }
 
 static TetcastFrame *shoot(World *world, const TetcastCamera *camera, uint32_t channels, int samples) {
@@ -97,10 +104,13 @@ static TetcastFrame *shoot(World *world, const TetcastCamera *camera, uint32_t c
   return frame;
 }
 
-static const double *channel(const TetcastFrame *frame, TetcastChannel which) { return tetcast_frame_channel(frame, which); }
+static const double *channel(const TetcastFrame *frame, TetcastChannel which) {
+  return tetcast_frame_channel(frame, which);
+}
 
 static void close_to(double got, double wanted, double relative, const char *what, int pixel) {
-  if (!(fabs(got - wanted) <= relative * fabs(wanted) + DBL_MIN)) fail_msg("%s at pixel %d: %.17g, not %.17g", what, pixel, got, wanted);
+  if (!(fabs(got - wanted) <= relative * fabs(wanted) + DBL_MIN))
+    fail_msg("%s at pixel %d: %.17g, not %.17g", what, pixel, got, wanted);
 }
 
 /* Through the cube of this size, as `above` sees it. */
@@ -127,16 +137,22 @@ static void homogeneous_cube(void **state) {
       TetcastFrame *frame = shoot(&world, &camera, all_channels, 1);
       const double *rgba = tetcast_frame_pixels(frame);
       for (int p = 0; p < PIXELS; ++p) {
-        const double length = meets(p) ? 1 : 0, shown = fmin(k, 0x1p999), radiance = length == 0 ? 0 : k == 0 ? j : j * (-expm1(-k) / k);
+        const double length = meets(p) ? 1 : 0, shown = fmin(k, 0x1p999),
+                     radiance = length == 0 ? 0
+                                : k == 0    ? j
+                                            : j * (-expm1(-k) / k);
         close_to(channel(frame, TETCAST_CHANNEL_PATH_LENGTH)[p], length, 2e-15, "path length", p);
         close_to(channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH)[p], shown * length, 4e-15, "optical depth", p);
-        close_to(channel(frame, TETCAST_CHANNEL_TRANSMITTANCE)[p], exp(-k * length), 2e-15 + 4e-15 * k, "transmittance", p);
+        close_to(channel(frame, TETCAST_CHANNEL_TRANSMITTANCE)[p], exp(-k * length), 2e-15 + 4e-15 * k, "transmittance",
+                 p);
         if (k >= 1e300) {
-          if (length > 0) close_to(channel(frame, TETCAST_CHANNEL_RADIANCE)[p], j / shown, 1e-14, "radiance of an opaque medium", p);
+          if (length > 0)
+            close_to(channel(frame, TETCAST_CHANNEL_RADIANCE)[p], j / shown, 1e-14, "radiance of an opaque medium", p);
         } else {
           close_to(channel(frame, TETCAST_CHANNEL_RADIANCE)[p], radiance, 1e-14, "radiance", p);
         }
-        for (int c = 0; c < 3; ++c) assert_true(rgba[4 * p + c] == channel(frame, TETCAST_CHANNEL_RADIANCE)[p]);
+        for (int c = 0; c < 3; ++c)
+          assert_true(rgba[4 * p + c] == channel(frame, TETCAST_CHANNEL_RADIANCE)[p]);
         close_to(rgba[4 * p + 3], -expm1(-k * length), 5e-15, "alpha", p);
       }
       tetcast_frame_destroy(&frame);
@@ -147,8 +163,8 @@ static void homogeneous_cube(void **state) {
   }
 }
 
-/* Through more cells than are summed up at a time; and what lies behind an optical depth of 746 can't be seen, however bright it is,
- * whether the ray goes on or not. */
+/* Through more cells than are summed up at a time; and what lies behind an optical depth of 746 can't be seen, however
+ * bright it is, whether the ray goes on or not. */
 static void long_rays(void **state) {
   (void)state;
   World world;
@@ -159,7 +175,8 @@ static void long_rays(void **state) {
   set_one(&world, extinction, emission, TETCAST_POINT);
   TetcastFrame *frame = shoot(&world, &camera, all_channels, 1);
   for (int p = 0; p < PIXELS; ++p) {
-    if (!meets(p)) continue;
+    if (!meets(p))
+      continue;
     close_to(channel(frame, TETCAST_CHANNEL_RADIANCE)[p], -2.5 * expm1(-4) / 4, 1e-13, "radiance", p);
     close_to(channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH)[p], 4, 1e-13, "optical depth", p);
     close_to(channel(frame, TETCAST_CHANNEL_PATH_LENGTH)[p], 1, 1e-15, "path length", p);
@@ -174,7 +191,8 @@ static void long_rays(void **state) {
   TetcastFrame *shorter = shoot(&world, &camera, TETCAST_CHANNEL_RADIANCE, 1);
   for (int p = 0; p < PIXELS; ++p) {
     assert_true(channel(frame, TETCAST_CHANNEL_RADIANCE)[p] == 0 && channel(shorter, TETCAST_CHANNEL_RADIANCE)[p] == 0);
-    if (meets(p)) close_to(channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH)[p], 1000, 1e-13, "optical depth", p);
+    if (meets(p))
+      close_to(channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH)[p], 1000, 1e-13, "optical depth", p);
   }
   tetcast_frame_destroy(&frame);
   tetcast_frame_destroy(&shorter);
@@ -197,7 +215,8 @@ static void one_of_the_two(void **state) {
   for (int p = 0; p < PIXELS; ++p) {
     const double length = meets(p) ? 1 : 0;
     close_to(channel(glow, TETCAST_CHANNEL_RADIANCE)[p], 1.25 * length, 2e-15, "emission", p);
-    assert_true(channel(glow, TETCAST_CHANNEL_OPTICAL_DEPTH)[p] == 0 && channel(glow, TETCAST_CHANNEL_TRANSMITTANCE)[p] == 1);
+    assert_true(channel(glow, TETCAST_CHANNEL_OPTICAL_DEPTH)[p] == 0 &&
+                channel(glow, TETCAST_CHANNEL_TRANSMITTANCE)[p] == 1);
     assert_true(((const double *)tetcast_frame_pixels(glow))[4 * p + 3] == 0);
     assert_true(channel(shadow, TETCAST_CHANNEL_RADIANCE)[p] == 0);
     close_to(channel(shadow, TETCAST_CHANNEL_TRANSMITTANCE)[p], exp(-1.25 * length), 4e-15, "transmittance", p);
@@ -210,7 +229,8 @@ static void one_of_the_two(void **state) {
 
 /* ── linear fields, against quadrature along the chord ── */
 
-/* ∫₀ᴸ (j0 + j' z) exp(−(k0 z + k' z²/2)) dz by the composite midpoint rule with Richardson's extrapolation, in extended precision. */
+/* ∫₀ᴸ (j0 + j' z) exp(−(k0 z + k' z²/2)) dz by the composite midpoint rule with Richardson's extrapolation, in extended
+ * precision. */
 static long double chord_radiance(const long double k[2], const long double j[2], long double length) {
   enum { LEVELS = 6 };
   long double table[LEVELS];
@@ -238,20 +258,24 @@ static void linear_fields_are_exact(void **state) {
     for (int64_t i = 0; i < world.cube.vertex_count; ++i) {
       const double *x = &world.cube.vertices[3 * i];
       extinction[i] = 0.5 * x[0] + 0.25 * x[1] + 2 * x[2]; /* nothing at a corner */
-      emission[i] = 3 - x[0] - 2 * x[2];                    /* nothing at another */
+      emission[i] = 3 - x[0] - 2 * x[2];                   /* nothing at another */
     }
     set_one(&world, extinction, emission, TETCAST_POINT);
     static const double starts[] = {1, 0.37}; /* heights that rays see the mesh from: its top, and inside */
     for (int i = 0; i < 2; ++i) {
       TetcastCamera camera = above(1);
-      if (starts[i] < 1) camera.eye[2] = starts[i];
+      if (starts[i] < 1)
+        camera.eye[2] = starts[i];
       TetcastFrame *frame = shoot(&world, &camera, all_channels, 1);
       for (int p = 0; p < PIXELS; ++p) {
-        if (!meets(p)) continue;
-        const long double x = 0.5L + 1.3L * W / H * ((p % W + 0.5L) / W - 0.5L), y = 0.5L - 1.3L * ((p / W + 0.5L) / H - 0.5L), z = starts[i];
+        if (!meets(p))
+          continue;
+        const long double x = 0.5L + 1.3L * W / H * ((p % W + 0.5L) / W - 0.5L),
+                          y = 0.5L - 1.3L * ((p / W + 0.5L) / H - 0.5L), z = starts[i];
         const long double k[2] = {0.5L * x + 0.25L * y + 2 * z, -2}, j[2] = {3 - x - 2 * z, 2}; /* downwards */
         close_to(channel(frame, TETCAST_CHANNEL_RADIANCE)[p], (double)chord_radiance(k, j, z), 2e-14, "radiance", p);
-        close_to(channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH)[p], (double)(k[0] * z - z * z), 1e-14, "optical depth", p);
+        close_to(channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH)[p], (double)(k[0] * z - z * z), 1e-14, "optical depth",
+                 p);
         close_to(channel(frame, TETCAST_CHANNEL_PATH_LENGTH)[p], starts[i], 2e-15, "path length", p);
       }
       tetcast_frame_destroy(&frame);
@@ -266,12 +290,13 @@ static void linear_fields_are_exact(void **state) {
 
 static double *random_values(int64_t count, uint64_t *seed, double low, double high) {
   double *values = malloc((size_t)count * sizeof *values);
-  for (int64_t i = 0; i < count; ++i) values[i] = uniform(seed) < 0.1 ? 0 : power(seed, low, high);
+  for (int64_t i = 0; i < count; ++i)
+    values[i] = uniform(seed) < 0.1 ? 0 : power(seed, low, high);
   return values;
 }
 
-/* Coefficients of points and cells mixed, thin and opaque groups together, a group with NaN: each as if it were alone, for any
- * number of threads and samples. */
+/* Coefficients of points and cells mixed, thin and opaque groups together, a group with NaN: each as if it were alone,
+ * for any number of threads and samples. */
 static void groups_are_single_runs(void **state) {
   (void)state;
   enum { GROUPS = 5 };
@@ -282,8 +307,11 @@ static void groups_are_single_runs(void **state) {
     Values extinction[GROUPS], emission[GROUPS];
     for (int g = 0; g < GROUPS; ++g) {
       const TetcastAssociation a = g % 2 ? TETCAST_CELL : TETCAST_POINT, b = g % 3 ? TETCAST_POINT : TETCAST_CELL;
-      extinction[g] = (Values){random_values(a == TETCAST_CELL ? world.cube.cell_count : world.cube.vertex_count, &seed, -2, g), a};
-      emission[g] = (Values){random_values(b == TETCAST_CELL ? world.cube.cell_count : world.cube.vertex_count, &seed, -3, 300.0 * (g == 2)), b};
+      extinction[g] =
+          (Values){random_values(a == TETCAST_CELL ? world.cube.cell_count : world.cube.vertex_count, &seed, -2, g), a};
+      emission[g] = (Values){random_values(b == TETCAST_CELL ? world.cube.cell_count : world.cube.vertex_count, &seed,
+                                           -3, 300.0 * (g == 2)),
+                             b};
     }
     ((double *)extinction[2].data)[100] = NAN;
     ((double *)emission[4].data)[80] = -INFINITY;
@@ -292,17 +320,23 @@ static void groups_are_single_runs(void **state) {
       assert_int_equal(set(&world, extinction, shared ? 1 : GROUPS, emission, GROUPS), TETCAST_OK);
       assert_int_equal(tetcast_scene_groups(world.scene), GROUPS);
       /* Without depth and path, rays end when all groups are opaque; with them, they don't. */
-      TetcastFrame *all = shoot(&world, &camera, all_channels, 3), *few = shoot(&world, &camera, TETCAST_CHANNEL_RADIANCE, 3);
-      assert_memory_equal(channel(all, TETCAST_CHANNEL_RADIANCE), channel(few, TETCAST_CHANNEL_RADIANCE), PIXELS * GROUPS * sizeof(double));
+      TetcastFrame *all = shoot(&world, &camera, all_channels, 3),
+                   *few = shoot(&world, &camera, TETCAST_CHANNEL_RADIANCE, 3);
+      assert_memory_equal(channel(all, TETCAST_CHANNEL_RADIANCE), channel(few, TETCAST_CHANNEL_RADIANCE),
+                          PIXELS * GROUPS * sizeof(double));
       assert_memory_equal(tetcast_frame_pixels(all), tetcast_frame_pixels(few), PIXELS * 4 * sizeof(double));
       tetcast_context_set_threads(world.fixture.context, 1);
       for (int g = 0; g < GROUPS; ++g) {
         assert_int_equal(set(&world, &extinction[shared ? 0 : g], 1, &emission[g], 1), TETCAST_OK);
-        TetcastFrame *one = shoot(&world, &camera, g & 1 ? all_channels : all_channels & ~(uint32_t)TETCAST_CHANNEL_PATH_LENGTH, 3);
+        TetcastFrame *one =
+            shoot(&world, &camera, g & 1 ? all_channels : all_channels & ~(uint32_t)TETCAST_CHANNEL_PATH_LENGTH, 3);
         for (int p = 0; p < PIXELS; ++p) {
-          assert_true(channel(all, TETCAST_CHANNEL_RADIANCE)[p * GROUPS + g] == channel(one, TETCAST_CHANNEL_RADIANCE)[p]);
-          assert_true(channel(all, TETCAST_CHANNEL_OPTICAL_DEPTH)[p * GROUPS + g] == channel(one, TETCAST_CHANNEL_OPTICAL_DEPTH)[p]);
-          assert_true(channel(all, TETCAST_CHANNEL_TRANSMITTANCE)[p * GROUPS + g] == channel(one, TETCAST_CHANNEL_TRANSMITTANCE)[p]);
+          assert_true(channel(all, TETCAST_CHANNEL_RADIANCE)[p * GROUPS + g] ==
+                      channel(one, TETCAST_CHANNEL_RADIANCE)[p]);
+          assert_true(channel(all, TETCAST_CHANNEL_OPTICAL_DEPTH)[p * GROUPS + g] ==
+                      channel(one, TETCAST_CHANNEL_OPTICAL_DEPTH)[p]);
+          assert_true(channel(all, TETCAST_CHANNEL_TRANSMITTANCE)[p * GROUPS + g] ==
+                      channel(one, TETCAST_CHANNEL_TRANSMITTANCE)[p]);
         }
         tetcast_frame_destroy(&one);
       }
@@ -327,16 +361,21 @@ static void traversals_agree(void **state) {
   double *extinction = NULL, *emission = NULL;
   for (int i = 0; i < 2; ++i) {
     world_begin(&worlds[i], 7, 0.5, 1, i ? TETCAST_TRAVERSAL_FACES : TETCAST_TRAVERSAL_SHELL, 2);
-    if (!extinction) extinction = random_values(worlds[i].cube.vertex_count, &seed, -2, 2);
-    if (!emission) emission = random_values(worlds[i].cube.vertex_count, &seed, -3, 0);
+    if (!extinction)
+      extinction = random_values(worlds[i].cube.vertex_count, &seed, -2, 2);
+    if (!emission)
+      emission = random_values(worlds[i].cube.vertex_count, &seed, -3, 0);
     set_one(&worlds[i], extinction, emission, TETCAST_POINT);
   }
   for (int c = 0; c < 3; ++c) {
     const TetcastCamera camera = camera_of(eyes[c][0], eyes[c][1], eyes[c][2], 0.5, 0.45, 0.4);
-    TetcastFrame *walked = shoot(&worlds[0], &camera, all_channels, 1), *tested = shoot(&worlds[1], &camera, all_channels, 1);
+    TetcastFrame *walked = shoot(&worlds[0], &camera, all_channels, 1),
+                 *tested = shoot(&worlds[1], &camera, all_channels, 1);
     for (int bit = TETCAST_CHANNEL_RADIANCE; bit <= TETCAST_CHANNEL_PATH_LENGTH; bit *= 2) {
       const double *a = channel(walked, (TetcastChannel)bit), *b = channel(tested, (TetcastChannel)bit);
-      for (int p = 0; p < PIXELS; ++p) close_to(a[p], b[p], 1e-12 * (1 + (bit == TETCAST_CHANNEL_TRANSMITTANCE ? -log(b[p] + DBL_MIN) : 0)), "shell and faces", p);
+      for (int p = 0; p < PIXELS; ++p)
+        close_to(a[p], b[p], 1e-12 * (1 + (bit == TETCAST_CHANNEL_TRANSMITTANCE ? -log(b[p] + DBL_MIN) : 0)),
+                 "shell and faces", p);
     }
     tetcast_frame_destroy(&walked);
     tetcast_frame_destroy(&tested);
@@ -347,7 +386,8 @@ static void traversals_agree(void **state) {
   world_end(&worlds[1]);
 }
 
-/* A mesh in another unit of length, with coefficients in that unit: powers of two change no bit, and nothing overflows on the way. */
+/* A mesh in another unit of length, with coefficients in that unit: powers of two change no bit, and nothing overflows
+ * on the way. */
 static void units_scale_exactly(void **state) {
   (void)state;
   static const int exponents[] = {0, 1, -7, 300, -300, 900, -900};
@@ -358,24 +398,33 @@ static void units_scale_exactly(void **state) {
     const double scale = ldexp(1, exponents[i]);
     world_begin(world, 6, 0.5, scale, TETCAST_TRAVERSAL_SHELL, 2);
     uint64_t seed = 9;
-    double *extinction = random_values(world->cube.vertex_count, &seed, -2, 2), *emission = random_values(world->cube.vertex_count, &seed, -3, 3);
-    for (int64_t v = 0; v < world->cube.vertex_count; ++v) extinction[v] /= scale;
+    double *extinction = random_values(world->cube.vertex_count, &seed, -2, 2),
+           *emission = random_values(world->cube.vertex_count, &seed, -3, 3);
+    for (int64_t v = 0; v < world->cube.vertex_count; ++v)
+      extinction[v] /= scale;
     set_one(world, extinction, emission, TETCAST_POINT);
     const TetcastCamera camera = above(scale);
     TetcastFrame *frame = shoot(world, &camera, all_channels, 1);
-    if (!reference) reference = frame;
+    if (!reference)
+      reference = frame;
     for (int p = 0; p < PIXELS; ++p) {
-      assert_true(channel(frame, TETCAST_CHANNEL_RADIANCE)[p] == scale * channel(reference, TETCAST_CHANNEL_RADIANCE)[p]);
-      assert_true(channel(frame, TETCAST_CHANNEL_PATH_LENGTH)[p] == scale * channel(reference, TETCAST_CHANNEL_PATH_LENGTH)[p]);
-      assert_true(channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH)[p] == channel(reference, TETCAST_CHANNEL_OPTICAL_DEPTH)[p]);
-      assert_true(channel(frame, TETCAST_CHANNEL_TRANSMITTANCE)[p] == channel(reference, TETCAST_CHANNEL_TRANSMITTANCE)[p]);
+      assert_true(channel(frame, TETCAST_CHANNEL_RADIANCE)[p] ==
+                  scale * channel(reference, TETCAST_CHANNEL_RADIANCE)[p]);
+      assert_true(channel(frame, TETCAST_CHANNEL_PATH_LENGTH)[p] ==
+                  scale * channel(reference, TETCAST_CHANNEL_PATH_LENGTH)[p]);
+      assert_true(channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH)[p] ==
+                  channel(reference, TETCAST_CHANNEL_OPTICAL_DEPTH)[p]);
+      assert_true(channel(frame, TETCAST_CHANNEL_TRANSMITTANCE)[p] ==
+                  channel(reference, TETCAST_CHANNEL_TRANSMITTANCE)[p]);
     }
-    if (frame != reference) tetcast_frame_destroy(&frame);
+    if (frame != reference)
+      tetcast_frame_destroy(&frame);
     free(extinction);
     free(emission);
   }
   tetcast_frame_destroy(&reference);
-  for (size_t i = 0; i < sizeof exponents / sizeof *exponents; ++i) world_end(&worlds[i]);
+  for (size_t i = 0; i < sizeof exponents / sizeof *exponents; ++i)
+    world_end(&worlds[i]);
 }
 
 /* Spikes next to nothing, of both coefficients: nothing is NaN, infinite, negative or above what is possible. */
@@ -398,9 +447,11 @@ static void extremes(void **state) {
     const TetcastCamera camera = above(1);
     TetcastFrame *frame = shoot(&world, &camera, all_channels, 1);
     for (int p = 0; p < PIXELS; ++p) {
-      const double radiance = channel(frame, TETCAST_CHANNEL_RADIANCE)[p], depth = channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH)[p];
+      const double radiance = channel(frame, TETCAST_CHANNEL_RADIANCE)[p],
+                   depth = channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH)[p];
       const double transmittance = channel(frame, TETCAST_CHANNEL_TRANSMITTANCE)[p];
-      assert_true(radiance >= 0 && radiance <= DBL_MAX && depth >= 0 && depth <= DBL_MAX && transmittance >= 0 && transmittance <= 1);
+      assert_true(radiance >= 0 && radiance <= DBL_MAX && depth >= 0 && depth <= DBL_MAX && transmittance >= 0 &&
+                  transmittance <= 1);
     }
     tetcast_frame_destroy(&frame);
     free(extinction);
@@ -429,7 +480,8 @@ static void largest_values(void **state) {
   world_end(&world);
 }
 
-/* A vertex whose extinction or emission is not a number, or infinite: the cells at it are left out, as cells of nothing are. */
+/* A vertex whose extinction or emission is not a number, or infinite: the cells at it are left out, as cells of nothing
+ * are. */
 static void values_that_are_not_finite(void **state) {
   (void)state;
   static const double bad[] = {NAN, INFINITY, -INFINITY};
@@ -438,7 +490,8 @@ static void values_that_are_not_finite(void **state) {
   const int64_t points = world.cube.vertex_count, cells = world.cube.cell_count, vertex = 100;
   double *k = constant(points, 2), *j = constant(points, 3), *cell_k = constant(cells, 2), *cell_j = constant(cells, 3);
   for (int64_t i = 0; i < 4 * cells; ++i) {
-    if (world.cube.cells[i] == vertex) cell_k[i / 4] = cell_j[i / 4] = 0;
+    if (world.cube.cells[i] == vertex)
+      cell_k[i / 4] = cell_j[i / 4] = 0;
   }
   const TetcastCamera camera = above(1);
   set_one(&world, cell_k, cell_j, TETCAST_CELL);
@@ -456,7 +509,8 @@ static void values_that_are_not_finite(void **state) {
         close_to(channel(frame, (TetcastChannel)bit)[p], channel(wanted, (TetcastChannel)bit)[p], 1e-13, "a hole", p);
       }
     }
-    for (int p = 0; p < PIXELS; ++p) holes += meets(p) && channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH)[p] < 1.99;
+    for (int p = 0; p < PIXELS; ++p)
+      holes += meets(p) && channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH)[p] < 1.99;
     tetcast_frame_destroy(&frame);
   }
   assert_true(holes > 6);
@@ -474,11 +528,13 @@ static void emission_is_linear(void **state) {
   World world;
   world_begin(&world, 5, 0.5, 1, TETCAST_TRAVERSAL_SHELL, 2);
   uint64_t seed = 5;
-  double *extinction = random_values(world.cube.vertex_count, &seed, -1, 1), *emission = random_values(world.cube.vertex_count, &seed, -1, 1);
+  double *extinction = random_values(world.cube.vertex_count, &seed, -1, 1),
+         *emission = random_values(world.cube.vertex_count, &seed, -1, 1);
   const TetcastCamera camera = above(1);
   set_one(&world, extinction, emission, TETCAST_POINT);
   TetcastFrame *plus = shoot(&world, &camera, all_channels, 1);
-  for (int64_t i = 0; i < world.cube.vertex_count; ++i) emission[i] = -emission[i];
+  for (int64_t i = 0; i < world.cube.vertex_count; ++i)
+    emission[i] = -emission[i];
   set_one(&world, extinction, emission, TETCAST_POINT);
   TetcastFrame *minus = shoot(&world, &camera, all_channels, 1);
   for (int p = 0; p < PIXELS; ++p) {
@@ -507,7 +563,8 @@ static void colors(void **state) {
   assert_int_equal(set(&world, &extinction[1], 1, emission, 3), TETCAST_OK);
   TetcastFrame *frame = shoot(&world, &camera, 0, 1);
   const double *pixel = (const double *)tetcast_frame_pixels(frame) + 4 * middle, once = -expm1(-0.5) / 0.5;
-  for (int g = 0; g < 3; ++g) close_to(pixel[g], (1 << g) * once, 1e-14, "colour", g);
+  for (int g = 0; g < 3; ++g)
+    close_to(pixel[g], (1 << g) * once, 1e-14, "colour", g);
   close_to(pixel[3], -expm1(-0.5), 1e-14, "alpha", middle);
   tetcast_frame_destroy(&frame);
   assert_int_equal(set(&world, extinction, 4, &emission[2], 1), TETCAST_OK);
@@ -518,7 +575,8 @@ static void colors(void **state) {
     mean += -expm1(-0.5 * g) / (0.5 * g);
     opacity += -expm1(-0.5 * g);
   }
-  for (int k = 0; k < 3; ++k) close_to(pixel[k], mean, 1e-14, "mean", k); /* of four, times the emission of four */
+  for (int k = 0; k < 3; ++k)
+    close_to(pixel[k], mean, 1e-14, "mean", k); /* of four, times the emission of four */
   close_to(pixel[3], opacity / 4, 1e-14, "mean opacity", middle);
   tetcast_frame_destroy(&frame);
   for (int g = 0; g < 4; ++g) {
@@ -532,7 +590,8 @@ static void colors(void **state) {
 
 static void refuse(World *world, TetcastStatus got, TetcastStatus wanted, const char *text) {
   assert_int_equal(got, wanted);
-  if (!strstr(world->fixture.message, text)) fail_msg("'%s' is missing in '%s'", text, world->fixture.message);
+  if (!strstr(world->fixture.message, text))
+    fail_msg("'%s' is missing in '%s'", text, world->fixture.message);
 }
 
 static TetcastStatus shoot_bad(World *world, uint32_t channels, int groups, TetcastIntegrator integrator) {
@@ -542,7 +601,8 @@ static TetcastStatus shoot_bad(World *world, uint32_t channels, int groups, Tetc
   desc.groups = groups;
   TetcastFrame *frame = NULL;
   TetcastStatus status = tetcast_frame_create(world->fixture.context, &desc, &frame);
-  if (status) return status;
+  if (status)
+    return status;
   const TetcastCamera camera = above(1);
   TetcastRenderDesc render = tetcast_render_desc_default();
   render.integrator = integrator;
@@ -557,9 +617,11 @@ static void bad_coefficients_are_refused(void **state) {
   world_begin(&world, 2, 0, 1, TETCAST_TRAVERSAL_SHELL, 1);
   double *values = constant(world.cube.cell_count, 1);
   Values list[MOST];
-  for (int i = 0; i < MOST; ++i) list[i] = (Values){values, i % 2 ? TETCAST_CELL : TETCAST_POINT};
+  for (int i = 0; i < MOST; ++i)
+    list[i] = (Values){values, i % 2 ? TETCAST_CELL : TETCAST_POINT};
   refuse(&world, set(&world, NULL, 0, NULL, 0), TETCAST_ERROR_ARGUMENT, "neither extinction nor emission");
-  refuse(&world, set(&world, list, 2, list, 3), TETCAST_ERROR_ARGUMENT, "an extinction of 2 groups with an emission of 3");
+  refuse(&world, set(&world, list, 2, list, 3), TETCAST_ERROR_ARGUMENT,
+         "an extinction of 2 groups with an emission of 3");
   assert_int_equal(tetcast_scene_groups(world.scene), 0);
   refuse(&world, shoot_bad(&world, 0, 1, TETCAST_INTEGRATOR_EXACT), TETCAST_ERROR_ARGUMENT, "no field yet");
 
@@ -576,15 +638,18 @@ static void bad_coefficients_are_refused(void **state) {
   desc.extinction_count = 1;
   desc.extinction_name = "sigma";
   field = field_of(world.fixture.context, values, 5, TETCAST_POINT);
-  refuse(&world, tetcast_scene_set_coefficients(world.scene, &desc), TETCAST_ERROR_ARGUMENT, "sigma has 5 values, the mesh 27 vertices");
+  refuse(&world, tetcast_scene_set_coefficients(world.scene, &desc), TETCAST_ERROR_ARGUMENT,
+         "sigma has 5 values, the mesh 27 vertices");
   tetcast_field_destroy(&field);
   values[13] = -0.5;
   field = field_of(world.fixture.context, values, world.cube.vertex_count, TETCAST_POINT);
-  refuse(&world, tetcast_scene_set_coefficients(world.scene, &desc), TETCAST_ERROR_DATA, "sigma: a negative extinction, -0.5 at vertex 13");
+  refuse(&world, tetcast_scene_set_coefficients(world.scene, &desc), TETCAST_ERROR_DATA,
+         "sigma: a negative extinction, -0.5 at vertex 13");
   tetcast_field_destroy(&field);
   desc.cookie = 0;
   refuse(&world, tetcast_scene_set_coefficients(world.scene, &desc), TETCAST_ERROR_ARGUMENT, "_default()");
-  refuse(&world, set(&world, list, 4, NULL, 0), TETCAST_ERROR_DATA, "extinction: a negative extinction of group 0, -0.5 at vertex 13");
+  refuse(&world, set(&world, list, 4, NULL, 0), TETCAST_ERROR_DATA,
+         "extinction: a negative extinction of group 0, -0.5 at vertex 13");
   refuse(&world, set(&world, &list[1], 1, NULL, 0), TETCAST_ERROR_DATA, "-0.5 at tetrahedron 13");
   assert_int_equal(tetcast_scene_groups(world.scene), 0);
 
@@ -594,9 +659,11 @@ static void bad_coefficients_are_refused(void **state) {
   const TetcastIntegrator exact = TETCAST_INTEGRATOR_EXACT;
   assert_int_equal(shoot_bad(&world, 0, 1, exact), TETCAST_OK);
   assert_int_equal(shoot_bad(&world, TETCAST_CHANNEL_PATH_LENGTH, 1, exact), TETCAST_OK);
-  refuse(&world, shoot_bad(&world, TETCAST_CHANNEL_RADIANCE, 1, exact), TETCAST_ERROR_ARGUMENT, "a frame of 1 groups, but the scene has 2");
+  refuse(&world, shoot_bad(&world, TETCAST_CHANNEL_RADIANCE, 1, exact), TETCAST_ERROR_ARGUMENT,
+         "a frame of 1 groups, but the scene has 2");
   assert_int_equal(shoot_bad(&world, TETCAST_CHANNEL_ERROR, 2, exact), TETCAST_OK);
-  refuse(&world, shoot_bad(&world, 0, 2, TETCAST_INTEGRATOR_MIDPOINT), TETCAST_ERROR_ARGUMENT, "only the exact integrator");
+  refuse(&world, shoot_bad(&world, 0, 2, TETCAST_INTEGRATOR_MIDPOINT), TETCAST_ERROR_ARGUMENT,
+         "only the exact integrator");
   refuse(&world, shoot_bad(&world, 64, 2, exact), TETCAST_ERROR_ARGUMENT, "unknown");
   refuse(&world, shoot_bad(&world, 0, 0, exact), TETCAST_ERROR_ARGUMENT, "0 groups");
   refuse(&world, shoot_bad(&world, 0, 257, exact), TETCAST_ERROR_ARGUMENT, "257 groups");
@@ -621,7 +688,8 @@ static void either_replaces_the_other(void **state) {
   TetcastFrame *direct = shoot(&world, &camera, 0, 1);
   assert_int_equal(tetcast_scene_set_transfer_function(world.scene, transfer), TETCAST_OK);
   assert_int_equal(tetcast_scene_groups(world.scene), 0);
-  refuse(&world, shoot_bad(&world, TETCAST_CHANNEL_PATH_LENGTH, 1, TETCAST_INTEGRATOR_EXACT), TETCAST_ERROR_ARGUMENT, "no channel path_length");
+  refuse(&world, shoot_bad(&world, TETCAST_CHANNEL_PATH_LENGTH, 1, TETCAST_INTEGRATOR_EXACT), TETCAST_ERROR_ARGUMENT,
+         "no channel path_length");
   TetcastFrameDesc desc = tetcast_frame_desc_default();
   desc.width = W;
   desc.height = H;
@@ -660,8 +728,10 @@ static void memory_may_run_out(void **state) {
     TetcastFrame *frame = NULL;
     world.fixture.fail_at = world.fixture.allocations + i;
     TetcastStatus status = tetcast_scene_set_coefficients(world.scene, &desc);
-    if (!status) status = tetcast_frame_create(world.fixture.context, &frame_desc, &frame);
-    if (!status) status = tetcast_scene_render(world.scene, &camera, NULL, frame, NULL);
+    if (!status)
+      status = tetcast_frame_create(world.fixture.context, &frame_desc, &frame);
+    if (!status)
+      status = tetcast_scene_render(world.scene, &camera, NULL, frame, NULL);
     world.fixture.fail_at = 0;
     tetcast_frame_destroy(&frame);
     assert_true(status == TETCAST_OK || status == TETCAST_ERROR_MEMORY);
@@ -673,11 +743,20 @@ static void memory_may_run_out(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(homogeneous_cube),        cmocka_unit_test(long_rays), cmocka_unit_test(one_of_the_two), cmocka_unit_test(linear_fields_are_exact),
-    cmocka_unit_test(groups_are_single_runs),  cmocka_unit_test(traversals_agree), cmocka_unit_test(units_scale_exactly),
-    cmocka_unit_test(extremes), cmocka_unit_test(largest_values), cmocka_unit_test(values_that_are_not_finite),
-    cmocka_unit_test(emission_is_linear), cmocka_unit_test(colors),
-    cmocka_unit_test(bad_coefficients_are_refused), cmocka_unit_test(either_replaces_the_other), cmocka_unit_test(memory_may_run_out)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(homogeneous_cube),
+                                     cmocka_unit_test(long_rays),
+                                     cmocka_unit_test(one_of_the_two),
+                                     cmocka_unit_test(linear_fields_are_exact),
+                                     cmocka_unit_test(groups_are_single_runs),
+                                     cmocka_unit_test(traversals_agree),
+                                     cmocka_unit_test(units_scale_exactly),
+                                     cmocka_unit_test(extremes),
+                                     cmocka_unit_test(largest_values),
+                                     cmocka_unit_test(values_that_are_not_finite),
+                                     cmocka_unit_test(emission_is_linear),
+                                     cmocka_unit_test(colors),
+                                     cmocka_unit_test(bad_coefficients_are_refused),
+                                     cmocka_unit_test(either_replaces_the_other),
+                                     cmocka_unit_test(memory_may_run_out)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

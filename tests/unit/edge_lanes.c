@@ -5,7 +5,7 @@
 #include "walk/points.h"
 
 #define NAME_(name) edge_##name
-#define NAME(name) NAME_(name)
+#define NAME(name)  NAME_(name)
 
 static TcLanePoints load(const EdgePoint *points, int64_t count) {
   TcLanePoints p = {tc_set(0), tc_set(0), tc_set(0), tc_set(0), tc_set_word(0)};
@@ -24,6 +24,7 @@ void NAME(TC_LANES_NAME)(const EdgePoint *a, const EdgePoint *b, int64_t count, 
     TcVec e[3];
     static const int same[3] = {0, 0, 0};
     tc_edges(tc_all(), &p, &q, same, same, e);
-    for (int l = 0; l < TC_LANES && i + l < count; ++l) edge[i + l] = (double)TC_AT(e[i / TC_LANES % 3], l);
+    for (int l = 0; l < TC_LANES && i + l < count; ++l)
+      edge[i + l] = (double)TC_AT(e[i / TC_LANES % 3], l);
   }
 }

@@ -114,7 +114,8 @@ static void health_counts(void **state) {
   assert_int_equal(h.boundary_faces, 4);
   assert_int_equal(h.components, 1);
   assert_int_equal(h.unused_vertices, 1);
-  assert_int_equal(h.inverted_cells + h.degenerate_cells + h.duplicate_cells + h.nonmanifold_faces + h.coincident_vertices, 0);
+  assert_int_equal(
+      h.inverted_cells + h.degenerate_cells + h.duplicate_cells + h.nonmanifold_faces + h.coincident_vertices, 0);
   assert_true(fabs(h.volume - 1.0 / 6) < 1e-16);
   assert_true(fabs(h.boundary_area - (1.5 + sqrt(3) / 2)) < 1e-15);
 
@@ -124,14 +125,16 @@ static void health_counts(void **state) {
   assert_int_equal(h.components, 1);
   assert_int_equal(h.unused_vertices, 0);
 
-  const int32_t bad[] = {0, 1, 2, 3, 1, 0, 2, 3, 0, 0, 1, 2, 3, 2, 1, 0}; /* a cell, its mirror image twice, a collapsed one */
+  const int32_t bad[] = {0, 1, 2, 3, 1, 0, 2, 3,
+                         0, 0, 1, 2, 3, 2, 1, 0}; /* a cell, its mirror image twice, a collapsed one */
   h = health_of(&fixture, bad, 4);
   assert_int_equal(h.duplicate_cells, 2);
   assert_int_equal(h.degenerate_cells, 1);
   assert_int_equal(h.inverted_cells, 1);
   assert_int_equal(h.boundary_faces, 4);
 
-  const int32_t fan[] = {0, 1, 2, 3, 0, 1, 2, 4, 0, 1, 3, 4, 0, 1, 2, 3}; /* edge 0–1 in three cells, one of them twice */
+  const int32_t fan[] = {0, 1, 2, 3, 0, 1, 2, 4,
+                         0, 1, 3, 4, 0, 1, 2, 3}; /* edge 0–1 in three cells, one of them twice */
   h = health_of(&fixture, fan, 3);
   assert_int_equal(h.nonmanifold_faces, 0);
   assert_int_equal(h.components, 1);
@@ -168,7 +171,8 @@ static void cube_is_healthy(void **state) {
   assert_int_equal(tetcast_mesh_health(fixture.context, mesh, &h), TETCAST_OK);
   assert_int_equal(h.boundary_faces, 6 * 2 * 81);
   assert_int_equal(h.components, 1);
-  assert_int_equal(h.degenerate_cells + h.duplicate_cells + h.nonmanifold_faces + h.unused_vertices + h.coincident_vertices, 0);
+  assert_int_equal(
+      h.degenerate_cells + h.duplicate_cells + h.nonmanifold_faces + h.unused_vertices + h.coincident_vertices, 0);
   assert_true(fabs(h.volume - 1) < 1e-13);
   assert_true(fabs(h.boundary_area - 6) < 1e-13);
   tetcast_mesh_destroy(&mesh);
@@ -176,7 +180,8 @@ static void cube_is_healthy(void **state) {
   fixture_end(&fixture);
 }
 
-/* Copies are independent of the caller's arrays, borrowed ones are the caller's; any stride, type and alignment reads the same. */
+/* Copies are independent of the caller's arrays, borrowed ones are the caller's; any stride, type and alignment reads
+ * the same. */
 static void arrays_of_any_shape(void **state) {
   (void)state;
   Fixture fixture;
@@ -200,7 +205,8 @@ static void arrays_of_any_shape(void **state) {
     for (int64_t i = 0; i < 5; ++i) {
       double p[3];
       tetcast_mesh_vertex(mesh, i, p);
-      for (int k = 0; k < 3; ++k) assert_true(p[k] == corners[i][k]);
+      for (int k = 0; k < 3; ++k)
+        assert_true(p[k] == corners[i][k]);
     }
     int64_t v[4];
     tetcast_mesh_tetrahedron(mesh, 1, v);
@@ -264,7 +270,8 @@ static void ranges_of_long_fields(void **state) {
     Fixture fixture;
     assert_int_equal(fixture_begin(&fixture, threads, 0), TETCAST_OK);
     for (int round = 0; round < 4; ++round) {
-      for (int i = 0; i < COUNT; ++i) values[i] = round == 3 ? NAN : (float)(i % 1000 - 500);
+      for (int i = 0; i < COUNT; ++i)
+        values[i] = round == 3 ? NAN : (float)(i % 1000 - 500);
       values[round * 400000] = -1e30f;
       values[COUNT - 1 - round * 300000] = 2e30f;
       values[600001] = INFINITY;
@@ -286,10 +293,15 @@ static void ranges_of_long_fields(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(bad_meshes_are_refused), cmocka_unit_test(first_of_many_bad_is_named), cmocka_unit_test(health_counts),
-    cmocka_unit_test(three_cells_at_a_face_are_nonmanifold), cmocka_unit_test(cube_is_healthy),
-    cmocka_unit_test(arrays_of_any_shape), cmocka_unit_test(bounds_are_those_of_the_cells), cmocka_unit_test(fields),
-    cmocka_unit_test(ranges_of_long_fields),
+      cmocka_unit_test(bad_meshes_are_refused),
+      cmocka_unit_test(first_of_many_bad_is_named),
+      cmocka_unit_test(health_counts),
+      cmocka_unit_test(three_cells_at_a_face_are_nonmanifold),
+      cmocka_unit_test(cube_is_healthy),
+      cmocka_unit_test(arrays_of_any_shape),
+      cmocka_unit_test(bounds_are_those_of_the_cells),
+      cmocka_unit_test(fields),
+      cmocka_unit_test(ranges_of_long_fields),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

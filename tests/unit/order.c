@@ -13,7 +13,8 @@ static int compare_records(const void *left, const void *right) {
   return a < b ? -1 : a > b;
 }
 
-/* Values are the places before: then sorting by the whole record is what a sort that keeps the order of equal keys does. */
+/* Values are the places before: then sorting by the whole record is what a sort that keeps the order of equal keys
+ * does. */
 static void sorting_is_stable(void **state) {
   (void)state;
   const int64_t counts[] = {0, 1, 2, 3, 1000, 200000};
@@ -34,7 +35,8 @@ static void sorting_is_stable(void **state) {
           memcpy(records, expected, count * sizeof *records);
           qsort(expected, count, sizeof *expected, compare_records);
         } else { /* the same again, from the sorted ones: put back to their places */
-          for (size_t i = 0; i < count; ++i) records[tc_record_value(expected[i])] = expected[i];
+          for (size_t i = 0; i < count; ++i)
+            records[tc_record_value(expected[i])] = expected[i];
         }
         assert_int_equal(tc_sort_records(fixture.context, &records, &scratch, counts[c], largest[l]), TETCAST_OK);
         assert_memory_equal(records, expected, count * sizeof *records);
@@ -59,7 +61,8 @@ static void curve_goes_from_neighbor_to_neighbor(void **state) {
   uint64_t seed = 3;
   for (int round = 0; round < 40; ++round) {
     uint32_t corner[3];
-    for (int k = 0; k < 3; ++k) corner[k] = round == 0 ? 0 : (uint32_t)(uniform(&seed) * (1 << 16)) * SIDE;
+    for (int k = 0; k < 3; ++k)
+      corner[k] = round == 0 ? 0 : (uint32_t)(uniform(&seed) * (1 << 16)) * SIDE;
     static uint32_t points[COUNT][3];
     memset(points, 0xff, sizeof points);
     for (uint32_t i = 0; i < COUNT; ++i) {
@@ -71,7 +74,8 @@ static void curve_goes_from_neighbor_to_neighbor(void **state) {
     }
     for (int i = 1; i < COUNT; ++i) {
       int64_t steps = 0;
-      for (int k = 0; k < 3; ++k) steps += llabs((int64_t)points[i][k] - (int64_t)points[i - 1][k]);
+      for (int k = 0; k < 3; ++k)
+        steps += llabs((int64_t)points[i][k] - (int64_t)points[i - 1][k]);
       assert_int_equal(steps, 1);
     }
   }
@@ -89,7 +93,8 @@ static uint32_t *order_of(const Cube *cube) {
     uint32_t *order;
     assert_int_equal(tc_order_vertices(mesh, &order), TETCAST_OK);
     const size_t size = (size_t)cube->vertex_count * sizeof *order;
-    if (!first) first = memcpy(malloc(size), order, size);
+    if (!first)
+      first = memcpy(malloc(size), order, size);
     assert_memory_equal(order, first, size);
     fixture_release(&fixture, order);
     tetcast_mesh_destroy(&mesh);
@@ -134,11 +139,14 @@ static void any_unit_gives_the_same_order(void **state) {
   uint32_t *first = NULL;
   for (int i = 0; i < 3; ++i) {
     Cube cube = cube_create(4, 0);
-    for (int64_t j = 0; j < 3 * cube.vertex_count; ++j) cube.vertices[j] = ldexp(2 * cube.vertices[j] - 1, exponents[i]);
+    for (int64_t j = 0; j < 3 * cube.vertex_count; ++j)
+      cube.vertices[j] = ldexp(2 * cube.vertices[j] - 1, exponents[i]);
     uint32_t *order = order_of(&cube);
-    if (!first) first = order;
+    if (!first)
+      first = order;
     assert_memory_equal(order, first, (size_t)cube.vertex_count * sizeof *order);
-    if (order != first) free(order);
+    if (order != first)
+      free(order);
     cube_destroy(&cube);
   }
   free(first);
@@ -149,7 +157,8 @@ static void any_point_has_a_place(void **state) {
   (void)state;
   for (int i = 0; i < 2; ++i) {
     Cube cube = cube_create(3, 0);
-    if (i == 0) memset(cube.vertices, 0, (size_t)cube.vertex_count * 3 * sizeof *cube.vertices);
+    if (i == 0)
+      memset(cube.vertices, 0, (size_t)cube.vertex_count * 3 * sizeof *cube.vertices);
     cube.cell_count = 1;
     cube.vertices[3 * 40] = DBL_MAX;
     cube.vertices[3 * 41 + 1] = -DBL_MAX;
@@ -160,11 +169,9 @@ static void any_point_has_a_place(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(sorting_is_stable),
-    cmocka_unit_test(curve_goes_from_neighbor_to_neighbor),
-    cmocka_unit_test(vertices_follow_the_curve),
-    cmocka_unit_test(any_unit_gives_the_same_order),
-    cmocka_unit_test(any_point_has_a_place),
+      cmocka_unit_test(sorting_is_stable),         cmocka_unit_test(curve_goes_from_neighbor_to_neighbor),
+      cmocka_unit_test(vertices_follow_the_curve), cmocka_unit_test(any_unit_gives_the_same_order),
+      cmocka_unit_test(any_point_has_a_place),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Preparing a volume: the adjacency against one that is made in the simplest way, the same for any number of threads, within its
- * memory, and stopped or out of memory at any point. */
+/* Preparing a volume: the adjacency against one that is made in the simplest way, the same for any number of threads,
+ * within its memory, and stopped or out of memory at any point. */
 #include "support.h"
 
 #include "volume/rows.h"
@@ -21,11 +21,16 @@ static void shuffle(Cube *cube, uint64_t seed) {
 /* Cells left out and faces of three cells. */
 static void damage(Cube *cube, uint64_t seed) {
   for (int i = 0; i < 40; ++i) {
-    const int64_t a = (int64_t)(uniform(&seed) * (double)cube->cell_count), b = (int64_t)(uniform(&seed) * (double)cube->cell_count);
-    if (i % 4 == 0) cube->cells[4 * a] = cube->cells[4 * a + 2];
-    else if (i % 4 == 1) memcpy(&cube->cells[4 * a], &cube->cells[4 * b], 4 * sizeof *cube->cells);
-    else if (i % 4 == 2) cube->cells[4 * a] = cube->cells[4 * b + 1];
-    else memcpy(&cube->cells[4 * a], &cube->cells[4 * b], 3 * sizeof *cube->cells);
+    const int64_t a = (int64_t)(uniform(&seed) * (double)cube->cell_count),
+                  b = (int64_t)(uniform(&seed) * (double)cube->cell_count);
+    if (i % 4 == 0)
+      cube->cells[4 * a] = cube->cells[4 * a + 2];
+    else if (i % 4 == 1)
+      memcpy(&cube->cells[4 * a], &cube->cells[4 * b], 4 * sizeof *cube->cells);
+    else if (i % 4 == 2)
+      cube->cells[4 * a] = cube->cells[4 * b + 1];
+    else
+      memcpy(&cube->cells[4 * a], &cube->cells[4 * b], 3 * sizeof *cube->cells);
   }
 }
 
@@ -57,12 +62,14 @@ typedef struct Face {
 static int compare_faces(const void *left, const void *right) {
   const Face *a = left, *b = right;
   for (int k = 0; k < 3; ++k) {
-    if (a->v[k] != b->v[k]) return a->v[k] < b->v[k] ? -1 : 1;
+    if (a->v[k] != b->v[k])
+      return a->v[k] < b->v[k] ? -1 : 1;
   }
   return 0;
 }
 
-/* That each face of the cells is joined to the one other that has its vertices, and is on the shell when there is none or more. */
+/* That each face of the cells is joined to the one other that has its vertices, and is on the shell when there is none
+ * or more. */
 static void check_faces(const TcAdjacency *adjacency) {
   const size_t count = (size_t)adjacency->cell_count * 4;
   Face *faces = malloc((count + 1) * sizeof *faces);
@@ -70,14 +77,16 @@ static void check_faces(const TcAdjacency *adjacency) {
     faces[i].cell = (uint32_t)(i / 4);
     faces[i].k = (uint32_t)(i % 4);
     for (uint32_t j = 0, n = 0; j < 4; ++j) {
-      if (j != i % 4) faces[i].v[n++] = adjacency->vertices[i / 4][j];
+      if (j != i % 4)
+        faces[i].v[n++] = adjacency->vertices[i / 4][j];
     }
   }
   qsort(faces, count, sizeof *faces, compare_faces);
   int64_t boundary = 0, nonmanifold = 0, shell = 0;
   for (size_t i = 0, n; i < count; i += n) {
     n = 1;
-    while (i + n < count && compare_faces(&faces[i], &faces[i + n]) == 0) ++n;
+    while (i + n < count && compare_faces(&faces[i], &faces[i + n]) == 0)
+      ++n;
     boundary += n == 1;
     nonmanifold += n > 2;
     for (size_t j = i; j < i + n; ++j) {
@@ -103,13 +112,15 @@ static void check_faces(const TcAdjacency *adjacency) {
 static int compare_cells(const void *left, const void *right) {
   const uint32_t *a = left, *b = right;
   for (int k = 0; k < 4; ++k) {
-    if (a[k] != b[k]) return a[k] < b[k] ? -1 : 1;
+    if (a[k] != b[k])
+      return a[k] < b[k] ? -1 : 1;
   }
   return 0;
 }
 
 static void take_cell(const Cube *cube, const uint32_t *rank, int64_t i, uint32_t v[4]) {
-  for (int k = 0; k < 4; ++k) v[k] = rank ? rank[cube->cells[4 * i + k]] : (uint32_t)cube->cells[4 * i + k];
+  for (int k = 0; k < 4; ++k)
+    v[k] = rank ? rank[cube->cells[4 * i + k]] : (uint32_t)cube->cells[4 * i + k];
   tc_sort4(v);
 }
 
@@ -128,7 +139,8 @@ static void check_cells(const Cube *cube, const uint32_t *rank, const TcAdjacenc
   }
   int64_t collapsed = 0, duplicates = 0;
   for (int64_t i = 0; i < cube->cell_count; ++i) {
-    if (kept[i]) continue;
+    if (kept[i])
+      continue;
     uint32_t v[4];
     take_cell(cube, rank, i, v);
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[3]) {
@@ -150,7 +162,8 @@ static void check_cells(const Cube *cube, const uint32_t *rank, const TcAdjacenc
 static void check_adjacency(Cube cube) {
   const int threads[] = {1, 2, 3, 7};
   uint32_t *rank = malloc((size_t)cube.vertex_count * sizeof *rank);
-  for (int64_t i = 0; i < cube.vertex_count; ++i) rank[i] = (uint32_t)(cube.vertex_count - 1 - i);
+  for (int64_t i = 0; i < cube.vertex_count; ++i)
+    rank[i] = (uint32_t)(cube.vertex_count - 1 - i);
   for (int renumbered = 0; renumbered < 2; ++renumbered) {
     Fixture fixture[4];
     TcAdjacency adjacency[4];
@@ -293,10 +306,12 @@ typedef struct Meter {
 static void *meter_allocate(void *user, size_t size, size_t alignment) {
   Meter *meter = user;
   char *memory = aligned_alloc(alignment, (size + 2 * alignment - 1) / alignment * alignment);
-  if (!memory) return NULL;
+  if (!memory)
+    return NULL;
   memcpy(memory, &size, sizeof size);
   const long long live = __atomic_add_fetch(&meter->live, (long long)size, __ATOMIC_RELAXED);
-  if (live > meter->peak) meter->peak = live; /* what counts is allocated between loops */
+  if (live > meter->peak)
+    meter->peak = live; /* what counts is allocated between loops */
   return memory + alignment;
 }
 
@@ -315,7 +330,8 @@ static void memory_is_bounded(void **state) {
     Cube cube = cube_create(24, 0.3);
     shuffle(&cube, 2);
     const size_t half = (size_t)cube.cell_count / 2 * 4;
-    if (doubled) memcpy(cube.cells + half, cube.cells, half * sizeof *cube.cells);
+    if (doubled)
+      memcpy(cube.cells + half, cube.cells, half * sizeof *cube.cells);
     Meter meter = {0};
     TetcastContextDesc desc = tetcast_context_desc_default();
     desc.threads = 1;
@@ -334,7 +350,8 @@ static void memory_is_bounded(void **state) {
     assert_int_equal(tetcast_scene_create(context, volume, &scene), TETCAST_OK);
     const long long before_field = meter.live;
     assert_int_equal(tetcast_scene_set_field(scene, field), TETCAST_OK);
-    assert_true(meter.live - before_field <= 8 * cube.vertex_count + 4096 + cube.cell_count / 8); /* values, clusters' ranges */
+    assert_true(meter.live - before_field <=
+                8 * cube.vertex_count + 4096 + cube.cell_count / 8); /* values, clusters' ranges */
     TetcastVolumeInfo info;
     tetcast_volume_info(volume, &info);
     const long long resident = meter.live - before - 4 * info.left_out; /* sources are not moved once more */
@@ -354,7 +371,8 @@ static void memory_is_bounded(void **state) {
   }
 }
 
-/* Volumes are the same for any number of threads, whatever order the mesh comes in, and neighbours are near in memory. */
+/* Volumes are the same for any number of threads, whatever order the mesh comes in, and neighbours are near in memory.
+ */
 static void volumes_are_ordered(void **state) {
   (void)state;
   Cube cube = cube_create(24, 0.3);
@@ -367,18 +385,21 @@ static void volumes_are_ordered(void **state) {
     TetcastMesh *mesh = cube_mesh(fixture.context, &cube);
     TetcastVolume *volume = volume_of(fixture.context, mesh, TETCAST_TRAVERSAL_SHELL);
     tetcast_mesh_destroy(&mesh);
-    if (!first) first = volume;
+    if (!first)
+      first = volume;
     const size_t cells = (size_t)volume->cell_count, vertices = (size_t)volume->vertex_count;
     assert_memory_equal(volume->positions, first->positions, vertices * 3 * sizeof(double));
     assert_memory_equal(volume->vertex_source, first->vertex_source, vertices * sizeof *volume->vertex_source);
     assert_memory_equal(volume->adjacency.cells, first->adjacency.cells, cells * sizeof *volume->adjacency.cells);
-    if (volume != first) tetcast_volume_destroy(&volume);
+    if (volume != first)
+      tetcast_volume_destroy(&volume);
   }
   int64_t near = 0, joined = 0;
   for (int64_t i = 0; i < first->cell_count; ++i) {
     for (int k = 0; k < 4; ++k) {
       const uint32_t neighbor = first->adjacency.cells[i].neighbor[k];
-      if (neighbor & TC_SHELL) continue;
+      if (neighbor & TC_SHELL)
+        continue;
       ++joined;
       near += llabs((int64_t)neighbor - i) < 200;
     }
@@ -389,15 +410,18 @@ static void volumes_are_ordered(void **state) {
   cube_destroy(&cube);
 }
 
-/* That every vertex and cell of the volume is the one of the mesh that it says, and so is each of the rows' values, if any. */
+/* That every vertex and cell of the volume is the one of the mesh that it says, and so is each of the rows' values, if
+ * any. */
 static void check_sources(const TetcastVolume *volume, const Cube *cube, const TcRows *rows, const double *values) {
   uint32_t *rank = malloc((size_t)cube->vertex_count * sizeof *rank);
   for (uint32_t i = 0; i < (uint32_t)cube->vertex_count; ++i) {
     const int64_t vertex = volume->vertex_source[i];
     double position[3];
     tc_volume_vertex(volume, i, position);
-    for (int k = 0; k < 3; ++k) assert_true(ldexp(position[k], volume->exponent) == cube->vertices[3 * vertex + k]);
-    if (values && rows->association == TETCAST_POINT) assert_true(tc_rows_value(rows, i, 0) == values[vertex]);
+    for (int k = 0; k < 3; ++k)
+      assert_true(ldexp(position[k], volume->exponent) == cube->vertices[3 * vertex + k]);
+    if (values && rows->association == TETCAST_POINT)
+      assert_true(tc_rows_value(rows, i, 0) == values[vertex]);
     rank[vertex] = i;
   }
   for (int64_t i = 0; i < volume->cell_count; ++i) {
@@ -405,11 +429,14 @@ static void check_sources(const TetcastVolume *volume, const Cube *cube, const T
     uint32_t v[4];
     take_cell(cube, rank, cell, v);
     assert_int_equal(volume->adjacency.cells[i].vertex_xor, v[0] ^ v[1] ^ v[2] ^ v[3]);
-    if (values && rows->association == TETCAST_CELL) assert_true(tc_rows_value(rows, i, 0) == values[cell]);
-    if (!values || rows->association != TETCAST_CORNER) continue;
+    if (values && rows->association == TETCAST_CELL)
+      assert_true(tc_rows_value(rows, i, 0) == values[cell]);
+    if (!values || rows->association != TETCAST_CORNER)
+      continue;
     for (int k = 0; k < 4; ++k) { /* that of the corner which is the cell's k-th vertex in ascending order */
       int corner = 0;
-      while (rank[cube->cells[4 * cell + corner]] != v[k]) ++corner;
+      while (rank[cube->cells[4 * cell + corner]] != v[k])
+        ++corner;
       assert_true(tc_rows_value(rows, i, k) == values[4 * cell + corner]);
     }
   }
@@ -424,7 +451,8 @@ static void values_find_their_places(void **state) {
   Cube cube = cube_create(16, 0.3);
   shuffle(&cube, 5);
   float *vertices = malloc((size_t)cube.vertex_count * 3 * sizeof *vertices);
-  for (int64_t i = 0; i < 3 * cube.vertex_count; ++i) cube.vertices[i] = (double)(vertices[i] = (float)cube.vertices[i]);
+  for (int64_t i = 0; i < 3 * cube.vertex_count; ++i)
+    cube.vertices[i] = (double)(vertices[i] = (float)cube.vertices[i]);
   TetcastMeshDesc mesh_desc = tetcast_mesh_desc_default();
   mesh_desc.vertices = (TetcastArray){vertices, TETCAST_TYPE_FLOAT32, cube.vertex_count, 0};
   mesh_desc.tetrahedra = (TetcastArray){cube.cells, TETCAST_TYPE_INT64, cube.cell_count, 0};
@@ -444,7 +472,8 @@ static void values_find_their_places(void **state) {
       for (int64_t i = 0; i < count; ++i) {
         values[i] = (double)i / 7;
         rounded[i] = (float)values[i];
-        if (!is_double) values[i] = (double)rounded[i];
+        if (!is_double)
+          values[i] = (double)rounded[i];
       }
       TetcastFieldDesc desc = tetcast_field_desc_default();
       desc.values = (TetcastArray){is_double ? (void *)values : (void *)rounded,
@@ -474,7 +503,8 @@ static void any_unit_is_scaled_exactly(void **state) {
   const int exponents[] = {996, 600, -500, -1022, -1070};
   for (size_t i = 0; i < sizeof exponents / sizeof *exponents; ++i) {
     Cube cube = cube_create(4, 0);
-    for (int64_t j = 0; j < 3 * cube.vertex_count; ++j) cube.vertices[j] = ldexp(2 * cube.vertices[j] - 1, exponents[i]);
+    for (int64_t j = 0; j < 3 * cube.vertex_count; ++j)
+      cube.vertices[j] = ldexp(2 * cube.vertices[j] - 1, exponents[i]);
     Fixture fixture;
     assert_int_equal(fixture_begin(&fixture, 1, 0), TETCAST_OK);
     TetcastMesh *mesh = cube_mesh(fixture.context, &cube);
@@ -490,15 +520,15 @@ static void any_unit_is_scaled_exactly(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(cubes),
-    cmocka_unit_test(damaged_meshes),
-    cmocka_unit_test(many_cells_at_a_vertex),
-    cmocka_unit_test(any_allocation_may_fail),
-    cmocka_unit_test(progress_goes_up_and_can_stop_it),
-    cmocka_unit_test(memory_is_bounded),
-    cmocka_unit_test(volumes_are_ordered),
-    cmocka_unit_test(values_find_their_places),
-    cmocka_unit_test(any_unit_is_scaled_exactly),
+      cmocka_unit_test(cubes),
+      cmocka_unit_test(damaged_meshes),
+      cmocka_unit_test(many_cells_at_a_vertex),
+      cmocka_unit_test(any_allocation_may_fail),
+      cmocka_unit_test(progress_goes_up_and_can_stop_it),
+      cmocka_unit_test(memory_is_bounded),
+      cmocka_unit_test(volumes_are_ordered),
+      cmocka_unit_test(values_find_their_places),
+      cmocka_unit_test(any_unit_is_scaled_exactly),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -35,9 +35,11 @@ static void world_end(World *world) {
 }
 
 static const double cameras[][6] = {
-  {2.1, 1.7, 3.3, 0.5, 0.5, 0.5}, {0.5, 0.5, 4, 0.5, 0.5, 0.5}, {-2, 0.5, 0.5, 0.5, 0.5, 0.5},
-  {0.43, 0.52, 0.61, 1, 0.2, 0}, /* inside */
-  {3, 3, 3, 0, 0, 0},            /* down the main diagonal, along edges */
+    {2.1, 1.7, 3.3, 0.5, 0.5, 0.5},
+    {0.5, 0.5, 4, 0.5, 0.5, 0.5},
+    {-2, 0.5, 0.5, 0.5, 0.5, 0.5},
+    {0.43, 0.52, 0.61, 1, 0.2, 0}, /* inside */
+    {3, 3, 3, 0, 0, 0},            /* down the main diagonal, along edges */
 };
 
 static double *shot(World *world, double factor, int camera, bool orthographic, TetcastRenderStats *stats) {
@@ -75,7 +77,8 @@ static double chord(const double eye[3], const double direction[3], double near)
   double enter = near, leave = INFINITY;
   for (int k = 0; k < 3; ++k) {
     if (direction[k] == 0) {
-      if (eye[k] < 0 || eye[k] > 1) return 0;
+      if (eye[k] < 0 || eye[k] > 1)
+        return 0;
       continue;
     }
     const double t0 = (0 - eye[k]) / direction[k], t1 = (1 - eye[k]) / direction[k];
@@ -85,8 +88,9 @@ static double chord(const double eye[3], const double direction[3], double near)
   return leave > enter ? leave - enter : 0;
 }
 
-/* A uniform medium: the opacity is that of the chord, also with rays in faces, along edges and through vertices of a regular cube, where
- * every cell on the way is degenerate for the ray. Rays exactly in the cube's surface may count as inside or outside. */
+/* A uniform medium: the opacity is that of the chord, also with rays in faces, along edges and through vertices of a
+ * regular cube, where every cell on the way is degenerate for the ray. Rays exactly in the cube's surface may count as
+ * inside or outside. */
 static void uniform_medium_gives_the_chord(void **state) {
   (void)state;
   for (int traversal = 0; traversal < 2; ++traversal) {
@@ -95,9 +99,11 @@ static void uniform_medium_gives_the_chord(void **state) {
     TetcastTransferFunction *gray = gray_of(world.fixture.context, 1.5);
     for (int axis = 0; axis < 3; ++axis) {
       for (int sign = -1; sign <= 1; sign += 2) {
-        /* 17 × 17 orthographic rays at multiples of 1/16 from −1/32 … : every other one through grid lines and vertices */
+        /* 17 × 17 orthographic rays at multiples of 1/16 from −1/32 … : every other one through grid lines and vertices
+         */
         TetcastCamera camera = {.projection = TETCAST_ORTHOGRAPHIC, .height = 17.0 / 16, .up = {0, 0, 0}};
-        for (int k = 0; k < 3; ++k) camera.target[k] = camera.eye[k] = 0.5;
+        for (int k = 0; k < 3; ++k)
+          camera.target[k] = camera.eye[k] = 0.5;
         camera.eye[axis] = 0.5 + 3 * sign;
         camera.up[(axis + 1) % 3] = 1;
         double *pixels = picture(world.fixture.context, &world.body, gray, &camera, 17, 17, NULL);
@@ -128,17 +134,21 @@ static void perspective_chords(void **state) {
   TetcastTransferFunction *gray = gray_of(world.fixture.context, 0.8);
   for (size_t c = 0; c < sizeof cameras / sizeof *cameras; ++c) {
     TetcastCamera camera =
-      camera_of(cameras[c][0], cameras[c][1], cameras[c][2], cameras[c][3], cameras[c][4], cameras[c][5]);
+        camera_of(cameras[c][0], cameras[c][1], cameras[c][2], cameras[c][3], cameras[c][4], cameras[c][5]);
     double *pixels = picture(world.fixture.context, &world.body, gray, &camera, W, H, NULL);
     double forward[3], right[3], up[3], length = 0;
-    for (int k = 0; k < 3; ++k) length += pow(camera.target[k] - camera.eye[k], 2);
-    for (int k = 0; k < 3; ++k) forward[k] = (camera.target[k] - camera.eye[k]) / sqrt(length);
+    for (int k = 0; k < 3; ++k)
+      length += pow(camera.target[k] - camera.eye[k], 2);
+    for (int k = 0; k < 3; ++k)
+      forward[k] = (camera.target[k] - camera.eye[k]) / sqrt(length);
     for (int k = 0; k < 3; ++k) {
       right[k] = forward[(k + 1) % 3] * camera.up[(k + 2) % 3] - forward[(k + 2) % 3] * camera.up[(k + 1) % 3];
     }
     length = sqrt(right[0] * right[0] + right[1] * right[1] + right[2] * right[2]);
-    for (int k = 0; k < 3; ++k) right[k] /= length;
-    for (int k = 0; k < 3; ++k) up[k] = right[(k + 1) % 3] * forward[(k + 2) % 3] - right[(k + 2) % 3] * forward[(k + 1) % 3];
+    for (int k = 0; k < 3; ++k)
+      right[k] /= length;
+    for (int k = 0; k < 3; ++k)
+      up[k] = right[(k + 1) % 3] * forward[(k + 2) % 3] - right[(k + 2) % 3] * forward[(k + 1) % 3];
     for (int p = 0; p < W * H; ++p) {
       const double u = (2 * (p % W + 0.5) / W - 1) * W / H, v = 1 - 2 * (p / W + 0.5) / H, half = tan(acos(-1) / 12);
       double d[3], d2 = 0;
@@ -146,9 +156,11 @@ static void perspective_chords(void **state) {
         d[k] = forward[k] + half * (u * right[k] + v * up[k]);
         d2 += d[k] * d[k];
       }
-      for (int k = 0; k < 3; ++k) d[k] /= sqrt(d2);
+      for (int k = 0; k < 3; ++k)
+        d[k] /= sqrt(d2);
       const double expected = -expm1(-0.8 * chord(camera.eye, d, 0));
-      if (!(fabs(pixels[4 * p + 3] - expected) < 2e-14)) fail_msg("camera %zu pixel %d: %.17g", c, p, pixels[4 * p + 3]);
+      if (!(fabs(pixels[4 * p + 3] - expected) < 2e-14))
+        fail_msg("camera %zu pixel %d: %.17g", c, p, pixels[4 * p + 3]);
     }
     free(pixels);
   }
@@ -166,7 +178,8 @@ static void renumbering_changes_nothing(void **state) {
   uint64_t seed = 5;
   const int64_t n = b.cube.vertex_count, m = b.cube.cell_count;
   int64_t *number = malloc((size_t)n * sizeof *number);
-  for (int64_t i = 0; i < n; ++i) number[i] = i;
+  for (int64_t i = 0; i < n; ++i)
+    number[i] = i;
   for (int64_t i = n - 1; i > 0; --i) {
     const int64_t j = (int64_t)(uniform(&seed) * (double)(i + 1)), t = number[i];
     number[i] = number[j];
@@ -177,7 +190,8 @@ static void renumbering_changes_nothing(void **state) {
     b.cube.values[number[i]] = a.cube.values[i];
   }
   for (int64_t i = 0; i < m; ++i) {
-    for (int k = 0; k < 4; ++k) b.cube.cells[4 * (m - 1 - i) + k] = number[a.cube.cells[4 * i + (k + i) % 4]];
+    for (int k = 0; k < 4; ++k)
+      b.cube.cells[4 * (m - 1 - i) + k] = number[a.cube.cells[4 * i + (k + i) % 4]];
   }
   b.mesh = cube_mesh(b.fixture.context, &b.cube);
   b.body = body_of(b.fixture.context, b.mesh, TETCAST_TRAVERSAL_SHELL, b.cube.values, n, TETCAST_POINT);
@@ -200,7 +214,8 @@ static void powers_of_two_change_no_bit(void **state) {
     World world;
     assert_int_equal(fixture_begin(&world.fixture, 2, 0), TETCAST_OK);
     world.cube = cube_create(4, 0.5);
-    for (int64_t j = 0; j < 3 * world.cube.vertex_count; ++j) world.cube.vertices[j] *= scale;
+    for (int64_t j = 0; j < 3 * world.cube.vertex_count; ++j)
+      world.cube.vertices[j] *= scale;
     world.mesh = cube_mesh(world.fixture.context, &world.cube);
     world.body = body_of(world.fixture.context, world.mesh, TETCAST_TRAVERSAL_SHELL, world.cube.values,
                          world.cube.vertex_count, TETCAST_POINT);
@@ -212,7 +227,8 @@ static void powers_of_two_change_no_bit(void **state) {
     TetcastTransferFunction *transfer = transfer_of(world.fixture.context, 1 / scale);
     double *pixels = picture(world.fixture.context, &world.body, transfer, &camera, W, H, NULL);
     tetcast_transfer_function_destroy(&transfer);
-    if (!first) first = pixels;
+    if (!first)
+      first = pixels;
     else {
       assert_memory_equal(first, pixels, VALUES * sizeof *pixels);
       free(pixels);
@@ -260,7 +276,8 @@ static void fields_come_and_go(void **state) {
 
   /* constant per cell: as if the point field were constant */
   double *constant = malloc((size_t)cell_count * sizeof *constant);
-  for (int64_t i = 0; i < cell_count; ++i) constant[i] = 0.52;
+  for (int64_t i = 0; i < cell_count; ++i)
+    constant[i] = 0.52;
   assert_int_equal(show(context, scene, constant, cell_count, TETCAST_CELL), TETCAST_OK);
   double *cells = shot_of(context, scene);
   assert_int_equal(show(context, scene, constant, vertices, TETCAST_POINT), TETCAST_OK);
@@ -274,10 +291,12 @@ static void fields_come_and_go(void **state) {
   assert_memory_equal(points, still, VALUES * sizeof *still);
 
   /* all NaN: nothing to see; back to the first field: the same bits */
-  for (int64_t i = 0; i < cell_count; ++i) constant[i] = NAN;
+  for (int64_t i = 0; i < cell_count; ++i)
+    constant[i] = NAN;
   assert_int_equal(show(context, scene, constant, cell_count, TETCAST_CELL), TETCAST_OK);
   double *nothing = shot_of(context, scene);
-  for (int i = 0; i < VALUES; ++i) assert_true(nothing[i] == 0);
+  for (int i = 0; i < VALUES; ++i)
+    assert_true(nothing[i] == 0);
   assert_int_equal(show(context, scene, world.cube.values, vertices, TETCAST_POINT), TETCAST_OK);
   double *after = shot_of(context, scene);
   assert_memory_equal(before, after, VALUES * sizeof *after);
@@ -302,7 +321,8 @@ static void nan_vertices_are_holes(void **state) {
     int64_t kept = 0;
     for (int64_t i = 0; i < world.cube.cell_count; ++i) {
       const int64_t *c = &world.cube.cells[4 * i];
-      if (c[0] == hole || c[1] == hole || c[2] == hole || c[3] == hole) continue;
+      if (c[0] == hole || c[1] == hole || c[2] == hole || c[3] == hole)
+        continue;
       memmove(&world.cube.cells[4 * kept++], c, 4 * sizeof *c);
     }
     assert_true(kept < world.cube.cell_count);
@@ -310,7 +330,8 @@ static void nan_vertices_are_holes(void **state) {
     world.cube.values[hole] = value;
     TetcastMesh *mesh = cube_mesh(context, &world.cube);
     body_destroy(&world.body);
-    world.body = body_of(context, mesh, TETCAST_TRAVERSAL_SHELL, world.cube.values, world.cube.vertex_count, TETCAST_POINT);
+    world.body =
+        body_of(context, mesh, TETCAST_TRAVERSAL_SHELL, world.cube.values, world.cube.vertex_count, TETCAST_POINT);
     double *without = shot(&world, 1, 0, false, NULL);
     assert_true(largest_difference(with_nan, without, VALUES) < 1e-13);
     free(with_nan), free(without);
@@ -343,10 +364,12 @@ static void samples_average(void **state) {
     assert_int_equal(tetcast_scene_render(scene, &camera, &render, frame, &stats), TETCAST_OK);
     assert_int_equal(stats.rays, 144);
     const double *pixels = tetcast_frame_pixels(frame);
-    for (int p = 0; w == h && p < w * h; ++p) { /* the picture's aspect is that of its pixels: only the square one compares */
+    for (int p = 0; w == h && p < w * h;
+         ++p) { /* the picture's aspect is that of its pixels: only the square one compares */
       for (int k = 0; k < 4; ++k) {
         double mean = 0;
-        for (int s = 0; s < nx * ny; ++s) mean += fine[4 * ((p / w * ny + s / nx) * 12 + p % w * nx + s % nx) + k] / (nx * ny);
+        for (int s = 0; s < nx * ny; ++s)
+          mean += fine[4 * ((p / w * ny + s / nx) * 12 + p % w * nx + s % nx) + k] / (nx * ny);
         assert_true(fabs(mean - pixels[4 * p + k]) < 1e-14);
       }
     }
@@ -400,7 +423,8 @@ static void cancelling(void **state) {
   memcpy(bad.eye, bad.target, sizeof bad.eye);
   assert_int_equal(tetcast_scene_render(scene, &bad, NULL, frame, NULL), TETCAST_ERROR_ARGUMENT);
   bad = camera;
-  for (int k = 0; k < 3; ++k) bad.up[k] = 3 * (bad.target[k] - bad.eye[k]);
+  for (int k = 0; k < 3; ++k)
+    bad.up[k] = 3 * (bad.target[k] - bad.eye[k]);
   assert_int_equal(tetcast_scene_render(scene, &bad, NULL, frame, NULL), TETCAST_ERROR_ARGUMENT);
   bad.up[1] = NAN;
   assert_int_equal(tetcast_scene_render(scene, &bad, NULL, frame, NULL), TETCAST_ERROR_ARGUMENT);
@@ -430,28 +454,31 @@ static void scenes_in_threads(void **state) {
   world_begin(&b, 6, 0.5, TETCAST_TRAVERSAL_FACES, 2);
   Job jobs[3] = {{&a, 1, NULL}, {&a, 0.2, NULL}, {&b, 1, NULL}};
   pthread_t threads[3];
-  for (int i = 0; i < 3; ++i) assert_int_equal(pthread_create(&threads[i], NULL, run_job, &jobs[i]), 0);
-  for (int i = 0; i < 3; ++i) pthread_join(threads[i], NULL);
+  for (int i = 0; i < 3; ++i)
+    assert_int_equal(pthread_create(&threads[i], NULL, run_job, &jobs[i]), 0);
+  for (int i = 0; i < 3; ++i)
+    pthread_join(threads[i], NULL);
   double *alone = shot(&a, 0.2, 0, false, NULL);
   assert_memory_equal(alone, jobs[1].pixels, VALUES * sizeof *alone);
   assert_true(largest_difference(jobs[0].pixels, jobs[2].pixels, VALUES) < 1e-13);
   free(alone);
-  for (int i = 0; i < 3; ++i) free(jobs[i].pixels);
+  for (int i = 0; i < 3; ++i)
+    free(jobs[i].pixels);
   world_end(&a), world_end(&b);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(shell_equals_faces_for_any_number_of_threads),
-    cmocka_unit_test(uniform_medium_gives_the_chord),
-    cmocka_unit_test(perspective_chords),
-    cmocka_unit_test(renumbering_changes_nothing),
-    cmocka_unit_test(powers_of_two_change_no_bit),
-    cmocka_unit_test(fields_come_and_go),
-    cmocka_unit_test(nan_vertices_are_holes),
-    cmocka_unit_test(samples_average),
-    cmocka_unit_test(cancelling),
-    cmocka_unit_test(scenes_in_threads),
+      cmocka_unit_test(shell_equals_faces_for_any_number_of_threads),
+      cmocka_unit_test(uniform_medium_gives_the_chord),
+      cmocka_unit_test(perspective_chords),
+      cmocka_unit_test(renumbering_changes_nothing),
+      cmocka_unit_test(powers_of_two_change_no_bit),
+      cmocka_unit_test(fields_come_and_go),
+      cmocka_unit_test(nan_vertices_are_holes),
+      cmocka_unit_test(samples_average),
+      cmocka_unit_test(cancelling),
+      cmocka_unit_test(scenes_in_threads),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

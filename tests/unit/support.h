@@ -36,9 +36,11 @@ static inline void fixture_message(void *user, TetcastSeverity severity, const c
 static inline void *fixture_allocate(void *user, size_t size, size_t alignment) {
   Fixture *fixture = user;
   const long number = __atomic_add_fetch(&fixture->allocations, 1, __ATOMIC_RELAXED);
-  if (number == fixture->fail_at) return NULL;
+  if (number == fixture->fail_at)
+    return NULL;
   void *memory = aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
-  if (memory) __atomic_add_fetch(&fixture->live, 1, __ATOMIC_RELAXED);
+  if (memory)
+    __atomic_add_fetch(&fixture->live, 1, __ATOMIC_RELAXED);
   return memory;
 }
 
@@ -80,8 +82,8 @@ static inline double uniform(uint64_t *state) { /* in [0, 1) */
   return (double)(*state >> 11) * 0x1p-53;
 }
 
-/* The unit cube in n³ cubes of six tetrahedra each (Kuhn's cut), inner vertices moved by up to `jitter` of a cube's edge, with a
- * smooth field. */
+/* The unit cube in n³ cubes of six tetrahedra each (Kuhn's cut), inner vertices moved by up to `jitter` of a cube's
+ * edge, with a smooth field. */
 static inline Cube cube_create(int n, double jitter) {
   static const int order[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   const int64_t m = n + 1;
@@ -105,7 +107,8 @@ static inline Cube cube_create(int n, double jitter) {
     const int64_t corner = i % n + i / n % n * m + i / ((int64_t)n * n) * m * m;
     for (int t = 0; t < 6; ++t, cell += 4) {
       cell[0] = corner;
-      for (int k = 0; k < 3; ++k) cell[k + 1] = cell[k] + step[order[t][k]];
+      for (int k = 0; k < 3; ++k)
+        cell[k + 1] = cell[k] + step[order[t][k]];
     }
   }
   return cube;
@@ -126,7 +129,8 @@ static inline TetcastMesh *cube_mesh(TetcastContext *context, const Cube *cube) 
   return mesh;
 }
 
-static inline TetcastField *field_of(TetcastContext *context, const double *values, int64_t count, TetcastAssociation association) {
+static inline TetcastField *field_of(TetcastContext *context, const double *values, int64_t count,
+                                     TetcastAssociation association) {
   TetcastFieldDesc desc = tetcast_field_desc_default();
   desc.values = (TetcastArray){values, TETCAST_TYPE_FLOAT64, count, 0};
   desc.association = association;
@@ -167,8 +171,10 @@ static inline Body single_body(TetcastContext *context, const Cube *cube, const 
                                TetcastAssociation association) {
   float *vertices = malloc((size_t)cube->vertex_count * 3 * sizeof *vertices);
   float *rounded = malloc((size_t)count * sizeof *rounded);
-  for (int64_t i = 0; i < 3 * cube->vertex_count; ++i) vertices[i] = (float)cube->vertices[i];
-  for (int64_t i = 0; i < count; ++i) rounded[i] = (float)values[i];
+  for (int64_t i = 0; i < 3 * cube->vertex_count; ++i)
+    vertices[i] = (float)cube->vertices[i];
+  for (int64_t i = 0; i < count; ++i)
+    rounded[i] = (float)values[i];
   TetcastMeshDesc mesh_desc = tetcast_mesh_desc_default();
   mesh_desc.vertices = (TetcastArray){vertices, TETCAST_TYPE_FLOAT32, cube->vertex_count, 0};
   mesh_desc.tetrahedra = (TetcastArray){cube->cells, TETCAST_TYPE_INT64, cube->cell_count, 0};
@@ -196,7 +202,8 @@ static inline void body_destroy(Body *body) {
 static inline TetcastTransferFunction *transfer_of(TetcastContext *context, double factor) {
   static const double color[][4] = {{0, 1, 0, 0}, {0.4, 0, 1, 0}, {0.4, 0.2, 0.3, 0.9}, {1, 0.5, 0.7, 1}};
   double extinction[][2] = {{0.1, 0}, {0.3, 4}, {0.5, 1}, {0.55, 30}, {0.6, 0}, {0.8, 5}};
-  for (size_t i = 0; i < sizeof extinction / sizeof *extinction; ++i) extinction[i][1] *= factor;
+  for (size_t i = 0; i < sizeof extinction / sizeof *extinction; ++i)
+    extinction[i][1] *= factor;
   TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
   desc.color = color[0];
   desc.color_count = sizeof color / sizeof *color;
@@ -220,10 +227,12 @@ static inline TetcastTransferFunction *gray_of(TetcastContext *context, double k
   return transfer;
 }
 
-static inline double power(uint64_t *seed, double low, double high) { return pow(10, low + (high - low) * uniform(seed)); }
+static inline double power(uint64_t *seed, double low, double high) {
+  return pow(10, low + (high - low) * uniform(seed));
+}
 
-/* Some knots, some of them steps; extinctions of any strength next to each other, colours up to 1000, in some scenes bright ones behind
- * opaque ones. */
+/* Some knots, some of them steps; extinctions of any strength next to each other, colours up to 1000, in some scenes
+ * bright ones behind opaque ones. */
 static inline TetcastTransferFunction *random_transfer(TetcastContext *context, uint64_t *seed) {
   double color[16][4], extinction[16][2];
   int colors = 0, extinctions = 0;
@@ -233,11 +242,13 @@ static inline TetcastTransferFunction *random_transfer(TetcastContext *context, 
   while (colors < 14 && at < 1.1) {
     for (int twice = uniform(seed) < 0.2; twice >= 0; --twice, ++colors) {
       color[colors][0] = at;
-      for (int k = 1; k < 4; ++k) color[colors][k] = uniform(seed) < 0.2 ? 0 : power(seed, brightest - 3, brightest);
+      for (int k = 1; k < 4; ++k)
+        color[colors][k] = uniform(seed) < 0.2 ? 0 : power(seed, brightest - 3, brightest);
     }
     at += 0.4 * uniform(seed);
   }
-  if (uniform(seed) < 0.2) colors = 1;
+  if (uniform(seed) < 0.2)
+    colors = 1;
   at = 0;
   while (extinctions < 14 && at < 1.1) {
     for (int twice = uniform(seed) < 0.2; twice >= 0; --twice, ++extinctions) {
@@ -256,7 +267,8 @@ static inline TetcastTransferFunction *random_transfer(TetcastContext *context, 
   return transfer;
 }
 
-static inline TetcastScene *scene_of(TetcastContext *context, const Body *body, const TetcastTransferFunction *transfer) {
+static inline TetcastScene *scene_of(TetcastContext *context, const Body *body,
+                                     const TetcastTransferFunction *transfer) {
   TetcastScene *scene = NULL;
   assert_int_equal(tetcast_scene_create(context, body->volume, &scene), TETCAST_OK);
   assert_int_equal(tetcast_scene_set_field(scene, body->field), TETCAST_OK);
@@ -265,7 +277,8 @@ static inline TetcastScene *scene_of(TetcastContext *context, const Body *body, 
 }
 
 /* The preset of this name over [low, high], for the body. */
-static inline TetcastTransferFunction *preset_of(TetcastContext *context, const Body *body, const char *name, double low, double high) {
+static inline TetcastTransferFunction *preset_of(TetcastContext *context, const Body *body, const char *name,
+                                                 double low, double high) {
   TetcastScene *scene = NULL;
   TetcastTransferFunction *transfer = NULL;
   assert_int_equal(tetcast_scene_create(context, body->volume, &scene), TETCAST_OK);
@@ -275,12 +288,13 @@ static inline TetcastTransferFunction *preset_of(TetcastContext *context, const 
   return transfer;
 }
 
-/* The default description, with the instruction set that the environment variable TETCAST_TEST_ISA names by its number: the
- * same test serves all kernels. */
+/* The default description, with the instruction set that the environment variable TETCAST_TEST_ISA names by its number:
+ * the same test serves all kernels. */
 static inline TetcastRenderDesc render_desc(void) {
   TetcastRenderDesc desc = tetcast_render_desc_default();
   const char *isa = getenv("TETCAST_TEST_ISA");
-  if (isa) desc.isa = (TetcastIsa)atoi(isa);
+  if (isa)
+    desc.isa = (TetcastIsa)atoi(isa);
   return desc;
 }
 
@@ -308,8 +322,10 @@ static inline double largest_difference(const double *a, const double *b, size_t
   double largest = 0;
   for (size_t i = 0; i < count; ++i) {
     const double d = fabs(a[i] - b[i]);
-    if (isnan(d)) return INFINITY;
-    if (d > largest) largest = d;
+    if (isnan(d))
+      return INFINITY;
+    if (d > largest)
+      largest = d;
   }
   return largest;
 }

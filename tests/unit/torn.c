@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Meshes whose cells bring their own points, a few units in the last place apart, are those whose cells share them: no gap, no layer seen twice, in
- * either precision; values that jump from cell to cell stay each cell's own; cells that are thin by themselves stay as they are. */
+/* Meshes whose cells bring their own points, a few units in the last place apart, are those whose cells share them: no
+ * gap, no layer seen twice, in either precision; values that jump from cell to cell stay each cell's own; cells that
+ * are thin by themselves stay as they are. */
 #include "support.h"
 
 enum { W = 61, H = 47, CELLS = 5 };
@@ -21,14 +22,16 @@ static Torn torn_of(const Cube *cube, double offset, int units, bool single) {
   torn.values = malloc((size_t)torn.count * sizeof *torn.values);
   torn.jumping = malloc((size_t)torn.count * sizeof *torn.jumping);
   torn.cells = malloc((size_t)torn.count * sizeof *torn.cells);
-  const double unit = ldexp(single ? 0x1p-24 : 0x1p-53, ilogb(offset + 1) + 1); /* ulps of numbers just below the next power of two */
+  const double unit =
+      ldexp(single ? 0x1p-24 : 0x1p-53, ilogb(offset + 1) + 1); /* ulps of numbers just below the next power of two */
   for (int64_t i = 0; i < torn.count; ++i) {
     torn.cells[i] = i;
     torn.values[i] = cube->values[cube->cells[i]];
     torn.jumping[i] = torn.values[i] + 0.2 * ((double)(i / 4 % 7) / 7 - 0.5);
     for (int k = 0; k < 3; ++k) {
       double x = cube->vertices[3 * cube->cells[i] + k] + offset;
-      if (single) x = (double)(float)x;
+      if (single)
+        x = (double)(float)x;
       x += unit * floor((units + 1) * uniform(&seed));
       torn.vertices[3 * i + k] = x;
       torn.rounded[3 * i + k] = (float)x;
@@ -47,7 +50,8 @@ static void torn_destroy(Torn *torn) {
 
 static TetcastVolume *torn_volume(TetcastContext *context, const Torn *torn, TetcastTraversal traversal, bool single) {
   TetcastMeshDesc desc = tetcast_mesh_desc_default();
-  desc.vertices = single ? (TetcastArray){torn->rounded, TETCAST_TYPE_FLOAT32, torn->count, 0} : (TetcastArray){torn->vertices, TETCAST_TYPE_FLOAT64, torn->count, 0};
+  desc.vertices = single ? (TetcastArray){torn->rounded, TETCAST_TYPE_FLOAT32, torn->count, 0}
+                         : (TetcastArray){torn->vertices, TETCAST_TYPE_FLOAT64, torn->count, 0};
   desc.tetrahedra = (TetcastArray){torn->cells, TETCAST_TYPE_INT64, torn->count / 4, 0};
   TetcastMesh *mesh = NULL;
   assert_int_equal(tetcast_mesh_create(context, &desc, &mesh), TETCAST_OK);
@@ -62,7 +66,8 @@ static Body whole_body(TetcastContext *context, const Cube *cube, double offset,
   moved.vertices = malloc((size_t)cube->vertex_count * 3 * sizeof *moved.vertices);
   for (int64_t i = 0; i < 3 * cube->vertex_count; ++i) {
     moved.vertices[i] = cube->vertices[i] + offset;
-    if (single) moved.vertices[i] = (double)(float)moved.vertices[i];
+    if (single)
+      moved.vertices[i] = (double)(float)moved.vertices[i];
   }
   const Body body = cube_body(context, &moved, TETCAST_TRAVERSAL_SHELL);
   free(moved.vertices);
@@ -87,21 +92,26 @@ static void cells_meet(void **state) {
     tetcast_volume_info(whole.volume, &whole_info);
     assert_int_equal(info.welded, torn.count - cube.vertex_count);
     assert_int_equal(whole_info.welded, 0);
-    if (!faces) assert_int_equal(info.shell_faces, whole_info.shell_faces);
+    if (!faces)
+      assert_int_equal(info.shell_faces, whole_info.shell_faces);
     TetcastTransferFunction *transfer = gray_of(fixture.context, 2);
     /* Along an axis, where the regular cube's rays run in faces and edges, and from the side. */
     for (int view = 0; view < 2; ++view) {
-      TetcastCamera camera = view ? camera_of(offset + 2.1, offset + 1.7, offset + 3.3, offset + 0.5, offset + 0.5, offset + 0.5)
-                                  : camera_of(offset + 0.5, offset + 0.5, offset + 3, offset + 0.5, offset + 0.5, offset + 0.5);
+      TetcastCamera camera =
+          view ? camera_of(offset + 2.1, offset + 1.7, offset + 3.3, offset + 0.5, offset + 0.5, offset + 0.5)
+               : camera_of(offset + 0.5, offset + 0.5, offset + 3, offset + 0.5, offset + 0.5, offset + 0.5);
       camera.projection = view ? TETCAST_PERSPECTIVE : TETCAST_ORTHOGRAPHIC;
       camera.height = 1.2;
       double *wanted = picture(fixture.context, &whole, transfer, &camera, W, H, NULL);
       double *pixels = picture(fixture.context, &body, transfer, &camera, W, H, NULL);
-      /* Points are up to three units from where the whole cube has them; rays may pass its outer edges on another side. */
+      /* Points are up to three units from where the whole cube has them; rays may pass its outer edges on another side.
+       */
       const double least = (single ? 1e-6 : 1e-14) * (1 + offset);
       int off = 0;
-      for (int p = 0; p < W * H; ++p) off += !(fabs(pixels[4 * p + 3] - wanted[4 * p + 3]) <= 20 * least);
-      if (off > 0) fail_msg("case %d, view %d: %d pixels differ", i, view, off);
+      for (int p = 0; p < W * H; ++p)
+        off += !(fabs(pixels[4 * p + 3] - wanted[4 * p + 3]) <= 20 * least);
+      if (off > 0)
+        fail_msg("case %d, view %d: %d pixels differ", i, view, off);
       free(pixels);
       free(wanted);
     }
@@ -126,14 +136,16 @@ static void values_jump(void **state) {
   for (int units = 0; units < 4; units += 3) {
     Torn torn = torn_of(&cube, 0, units, false);
     torn.jumping[77] = NAN;
-    Body body = {torn_volume(fixture.context, &torn, TETCAST_TRAVERSAL_SHELL, false), field_of(fixture.context, torn.jumping, torn.count, TETCAST_POINT)};
+    Body body = {torn_volume(fixture.context, &torn, TETCAST_TRAVERSAL_SHELL, false),
+                 field_of(fixture.context, torn.jumping, torn.count, TETCAST_POINT)};
     Body corners = {NULL, field_of(fixture.context, torn.jumping, torn.count, TETCAST_CORNER)};
     assert_int_equal(tetcast_volume_create(fixture.context, mesh, &desc, &corners.volume), TETCAST_OK);
     TetcastTransferFunction *transfer = transfer_of(fixture.context, 1);
     const TetcastCamera camera = camera_of(2.1, 1.7, 3.3, 0.5, 0.5, 0.5);
     double *wanted = picture(fixture.context, &corners, transfer, &camera, W, H, NULL);
     double *pixels = picture(fixture.context, &body, transfer, &camera, W, H, NULL);
-    for (int p = 0; p < 4 * W * H; ++p) assert_true(fabs(pixels[p] - wanted[p]) <= 1e-11);
+    for (int p = 0; p < 4 * W * H; ++p)
+      assert_true(fabs(pixels[p] - wanted[p]) <= 1e-11);
     /* It does jump: the picture is another one than that without. */
     Body smooth = {corners.volume, field_of(fixture.context, torn.values, torn.count, TETCAST_CORNER)};
     double *other = picture(fixture.context, &smooth, transfer, &camera, W, H, NULL);
@@ -166,7 +178,8 @@ static void thin_cells_stay(void **state) {
   (void)state;
   Fixture fixture;
   assert_int_equal(fixture_begin(&fixture, 1, 0), TETCAST_OK);
-  const double up = nextafter(0.7, 1), vertices[5][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.1, 0.1, 0.7}, {0.1, 0.1, up}};
+  const double up = nextafter(0.7, 1),
+               vertices[5][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.1, 0.1, 0.7}, {0.1, 0.1, up}};
   const int64_t cells[2][4] = {{0, 1, 2, 3}, {1, 2, 3, 4}};
   TetcastMeshDesc desc = tetcast_mesh_desc_default();
   desc.vertices = (TetcastArray){vertices, TETCAST_TYPE_FLOAT64, 5, 0};
@@ -183,7 +196,8 @@ static void thin_cells_stay(void **state) {
   fixture_end(&fixture);
 }
 
-/* Cells of any vertices, some of them twice, many vertices at few places: whatever is welded, all that has an inside is there. */
+/* Cells of any vertices, some of them twice, many vertices at few places: whatever is welded, all that has an inside is
+ * there. */
 static void any_cells(void **state) {
   (void)state;
   uint64_t seed = 5;
@@ -194,10 +208,12 @@ static void any_cells(void **state) {
     double vertices[VERTICES][3];
     int64_t cells[SOME][4];
     for (int i = 0; i < VERTICES; ++i) {
-      for (int k = 0; k < 3; ++k) vertices[i][k] = floor(3 * uniform(&seed)) / 2;
+      for (int k = 0; k < 3; ++k)
+        vertices[i][k] = floor(3 * uniform(&seed)) / 2;
     }
     for (int i = 0; i < SOME; ++i) {
-      for (int k = 0; k < 4; ++k) cells[i][k] = i ? (int64_t)(uniform(&seed) * VERTICES) : k;
+      for (int k = 0; k < 4; ++k)
+        cells[i][k] = i ? (int64_t)(uniform(&seed) * VERTICES) : k;
     }
     TetcastMeshDesc desc = tetcast_mesh_desc_default();
     desc.vertices = (TetcastArray){vertices, TETCAST_TYPE_FLOAT64, VERTICES, 0};
@@ -211,7 +227,8 @@ static void any_cells(void **state) {
     for (int i = 0; i < SOME; ++i) {
       bool twice = false;
       for (int k = 1; k < 4; ++k) {
-        for (int j = 0; j < k; ++j) twice = twice || cells[i][j] == cells[i][k];
+        for (int j = 0; j < k; ++j)
+          twice = twice || cells[i][j] == cells[i][k];
       }
       whole += !twice;
     }
@@ -223,6 +240,7 @@ static void any_cells(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(cells_meet), cmocka_unit_test(values_jump), cmocka_unit_test(thin_cells_stay), cmocka_unit_test(any_cells)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(cells_meet), cmocka_unit_test(values_jump),
+                                     cmocka_unit_test(thin_cells_stay), cmocka_unit_test(any_cells)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,7 +2,8 @@
 /* Transfer functions: what is refused, and how opacity becomes extinction. */
 #include "support.h"
 
-static TetcastTransferFunctionDesc desc_of(const double (*color)[4], int64_t colors, const double (*extinction)[2], int64_t n) {
+static TetcastTransferFunctionDesc desc_of(const double (*color)[4], int64_t colors, const double (*extinction)[2],
+                                           int64_t n) {
   TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
   desc.color = color[0];
   desc.color_count = colors;
@@ -20,16 +21,17 @@ static void bad_knots_are_refused(void **state) {
     double extinction[3][2];
     const char *word;
   } cases[] = {
-    {{{0, 0}, {1, -1}, {2, 0}}, "negative"},   {{{0, 0}, {2, 1}, {1, 0}}, "sorted"},
-    {{{0, 0}, {1, NAN}, {2, 0}}, "not finite"}, {{{0, 0}, {INFINITY, 1}, {2, 0}}, "not finite"},
-    {{{1, 0}, {1, 1}, {1, 0}}, "more than two"}, {{{0, INFINITY}, {1, 1}, {2, 0}}, "not finite"},
+      {{{0, 0}, {1, -1}, {2, 0}}, "negative"},     {{{0, 0}, {2, 1}, {1, 0}}, "sorted"},
+      {{{0, 0}, {1, NAN}, {2, 0}}, "not finite"},  {{{0, 0}, {INFINITY, 1}, {2, 0}}, "not finite"},
+      {{{1, 0}, {1, 1}, {1, 0}}, "more than two"}, {{{0, INFINITY}, {1, 1}, {2, 0}}, "not finite"},
   };
   TetcastTransferFunction *transfer;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     TetcastTransferFunctionDesc desc = desc_of(good, 2, cases[i].extinction, 3);
     assert_int_equal(tetcast_transfer_function_create(fixture.context, &desc, &transfer), TETCAST_ERROR_ARGUMENT);
     assert_null(transfer);
-    if (!strstr(fixture.message, cases[i].word)) fail_msg("case %zu: %s", i, fixture.message);
+    if (!strstr(fixture.message, cases[i].word))
+      fail_msg("case %zu: %s", i, fixture.message);
   }
   const double negative_color[2][4] = {{0, 1, 1, 1}, {1, 0, -0.5, 0}};
   TetcastTransferFunctionDesc desc = desc_of(negative_color, 2, ramp, 2);
@@ -89,7 +91,8 @@ static void presets_fit_any_unit(void **state) {
   double *first = NULL;
   for (size_t i = 0; i < sizeof scales / sizeof *scales; ++i) {
     Cube cube = cube_create(4, 0.3);
-    for (int64_t j = 0; j < 3 * cube.vertex_count; ++j) cube.vertices[j] *= scales[i];
+    for (int64_t j = 0; j < 3 * cube.vertex_count; ++j)
+      cube.vertices[j] *= scales[i];
     TetcastMesh *mesh = cube_mesh(fixture.context, &cube);
     Body body = body_of(fixture.context, mesh, TETCAST_TRAVERSAL_SHELL, cube.values, cube.vertex_count, TETCAST_POINT);
     TetcastScene *scene = NULL;
@@ -116,7 +119,8 @@ static void presets_fit_any_unit(void **state) {
       covered += pixels[4 * p + 3] > 0;
     }
     assert_true(sum / covered > 0.25 && sum / covered < 0.75);
-    if (!first) first = pixels;
+    if (!first)
+      first = pixels;
     else {
       assert_true(largest_difference(first, pixels, 1024) < 1e-9);
       free(pixels);
@@ -135,9 +139,9 @@ static void presets_fit_any_unit(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(bad_knots_are_refused),
-    cmocka_unit_test(opacity_becomes_extinction),
-    cmocka_unit_test(presets_fit_any_unit),
+      cmocka_unit_test(bad_knots_are_refused),
+      cmocka_unit_test(opacity_becomes_extinction),
+      cmocka_unit_test(presets_fit_any_unit),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Empty space is left out and nothing else: pictures where few clusters can be seen against those by the other traversal, which leaves
- * nothing out. */
+/* Empty space is left out and nothing else: pictures where few clusters can be seen against those by the other
+ * traversal, which leaves nothing out. */
 #include "support.h"
 
 #include "render/render.h"
@@ -27,7 +27,8 @@ typedef struct Pair {
 } Pair;
 
 static void set_fields(Pair *pair, const TetcastField *field) {
-  for (int i = 0; i < 2; ++i) assert_int_equal(tetcast_scene_set_field(pair->scene[i], field), TETCAST_OK);
+  for (int i = 0; i < 2; ++i)
+    assert_int_equal(tetcast_scene_set_field(pair->scene[i], field), TETCAST_OK);
 }
 
 /* Both pictures by every kernel, from outside and from within; returns the share of segments that were walked. */
@@ -42,7 +43,8 @@ static double compare(TetcastContext *context, Pair *pair, const TetcastTransfer
     desc.width = desc.height = SIZE;
     assert_int_equal(tetcast_frame_create(context, &desc, &frames[i]), TETCAST_OK);
     rgba[i] = (double *)tetcast_frame_pixels(frames[i]);
-    if (transfer) assert_int_equal(tetcast_scene_set_transfer_function(pair->scene[i], transfer), TETCAST_OK);
+    if (transfer)
+      assert_int_equal(tetcast_scene_set_transfer_function(pair->scene[i], transfer), TETCAST_OK);
   }
   for (size_t c = 0; c < sizeof cameras / sizeof *cameras; ++c) {
     for (int isa = TETCAST_ISA_SCALAR; isa <= TETCAST_ISA_AVX512; ++isa) {
@@ -58,7 +60,8 @@ static double compare(TetcastContext *context, Pair *pair, const TetcastTransfer
     }
   }
   assert_int_equal(pair->scene[0]->prepared->shell.visible != NULL, left_out);
-  for (int i = 0; i < 2; ++i) tetcast_frame_destroy(&frames[i]);
+  for (int i = 0; i < 2; ++i)
+    tetcast_frame_destroy(&frames[i]);
   return (double)segments[0] / (double)segments[1];
 }
 
@@ -89,12 +92,14 @@ static void nothing_visible_is_left_out(void **state) {
   TetcastField *field = field_of(fixture.context, cube.values, cube.vertex_count, TETCAST_POINT);
   set_fields(&pair, field);
   static const double at[] = {0.02, 0.05, 0.5, 0.98, 0.9, 2};
-  static const bool left_out[] = {true, true, false, true, true, true}; /* in the middle of the range too much is visible */
+  static const bool left_out[] = {true, true, false,
+                                  true, true, true}; /* in the middle of the range too much is visible */
   for (size_t i = 0; i < sizeof at / sizeof *at; ++i) {
     TetcastTransferFunction *transfer = peak_of(fixture.context, at[i], i == 2 ? 0.3 : 0.02, i % 2 ? 1e4 : 20);
     const double share = compare(fixture.context, &pair, transfer, left_out[i]);
     assert_true(left_out[i] ? share < 0.5 : share > 0.9);
-    if (at[i] > 1.5) assert_true(share == 0);
+    if (at[i] > 1.5)
+      assert_true(share == 0);
     tetcast_transfer_function_destroy(&transfer);
   }
   tetcast_field_destroy(&field);
@@ -116,10 +121,14 @@ static void a_new_field_is_seen(void **state) {
     const TetcastAssociation association = round == 3 ? TETCAST_CELL : TETCAST_POINT;
     const int64_t count = association == TETCAST_CELL ? cube.cell_count : cube.vertex_count;
     for (int64_t i = 0; i < count; ++i) {
-      if (association == TETCAST_CELL) values[i] = i < 2 * 6 * N * N ? 0.05 : 1; /* the two lowest layers */
-      else values[i] = round == 1 ? 1 - cube.values[i] : cube.values[i];
-      if (round == 2 && i % 50 == 0) values[i] = NAN;
-      if (round == 4) values[i] = 0.05; /* all is visible */
+      if (association == TETCAST_CELL)
+        values[i] = i < 2 * 6 * N * N ? 0.05 : 1; /* the two lowest layers */
+      else
+        values[i] = round == 1 ? 1 - cube.values[i] : cube.values[i];
+      if (round == 2 && i % 50 == 0)
+        values[i] = NAN;
+      if (round == 4)
+        values[i] = 0.05; /* all is visible */
     }
     TetcastField *field = field_of(fixture.context, values, count, association);
     set_fields(&pair, field);
@@ -168,7 +177,8 @@ static void seeds_know_their_clusters(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(nothing_visible_is_left_out), cmocka_unit_test(a_new_field_is_seen),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(nothing_visible_is_left_out),
+                                     cmocka_unit_test(a_new_field_is_seen),
                                      cmocka_unit_test(seeds_know_their_clusters)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

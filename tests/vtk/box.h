@@ -13,7 +13,8 @@ static inline TetcastDataset *read_with(Fixture *fixture, const char *path, Tetc
   fixture->errors = 0;
   fixture->warnings = 0;
   const TetcastStatus status = tetcast_dataset_read(fixture->context, path, &desc, &dataset);
-  if (status) print_error("%s\n", fixture->message);
+  if (status)
+    print_error("%s\n", fixture->message);
   assert_int_equal(status, TETCAST_OK);
   return dataset;
 }
@@ -26,9 +27,10 @@ static inline void refuse_with(Fixture *fixture, const char *path, TetcastDatase
   assert_complaint(fixture, path, words);
 }
 
-/* Layers `first` up to `end` of the box: a conforming mesh of that volume, s linear (times `scale`), c of the cell each tetrahedron is in;
- * scale 0 and no c: not looked at. */
-static inline void assert_layers(Fixture *fixture, const TetcastDataset *dataset, int first, int end, double scale, bool cells) {
+/* Layers `first` up to `end` of the box: a conforming mesh of that volume, s linear (times `scale`), c of the cell each
+ * tetrahedron is in; scale 0 and no c: not looked at. */
+static inline void assert_layers(Fixture *fixture, const TetcastDataset *dataset, int first, int end, double scale,
+                                 bool cells) {
   TetcastMesh *mesh;
   TetcastMeshHealth health;
   TetcastField *s = NULL, *c = NULL;
@@ -40,8 +42,10 @@ static inline void assert_layers(Fixture *fixture, const TetcastDataset *dataset
   assert_int_equal(health.components, 1);
   assert_int_equal(health.coincident_vertices, 0);
   assert_int_equal(health.unused_vertices, 0);
-  if (scale != 0) assert_int_equal(tetcast_dataset_field(dataset, "s", &s, NULL), TETCAST_OK);
-  if (cells) assert_int_equal(tetcast_dataset_field(dataset, "c", &c, NULL), TETCAST_OK);
+  if (scale != 0)
+    assert_int_equal(tetcast_dataset_field(dataset, "s", &s, NULL), TETCAST_OK);
+  if (cells)
+    assert_int_equal(tetcast_dataset_field(dataset, "c", &c, NULL), TETCAST_OK);
   for (int64_t i = 0; i < tetcast_mesh_tetrahedron_count(mesh); ++i) {
     int64_t v[4];
     double centre[3] = {0, 0, 0};
@@ -49,11 +53,14 @@ static inline void assert_layers(Fixture *fixture, const TetcastDataset *dataset
     for (int j = 0; j < 4; ++j) {
       double p[3];
       tetcast_mesh_vertex(mesh, v[j], p);
-      for (int k = 0; k < 3; ++k) centre[k] += p[k] / 4;
-      if (s) assert_true(tetcast_field_value(s, v[j]) == scale * (p[0] + 2 * p[1] + 4 * p[2]));
+      for (int k = 0; k < 3; ++k)
+        centre[k] += p[k] / 4;
+      if (s)
+        assert_true(tetcast_field_value(s, v[j]) == scale * (p[0] + 2 * p[1] + 4 * p[2]));
     }
     const double cell = floor(centre[0]) + 3 * floor(centre[1]) + 6 * floor(2 * centre[2]);
-    if (c) assert_true(tetcast_field_value(c, i) == cell);
+    if (c)
+      assert_true(tetcast_field_value(c, i) == cell);
   }
   tetcast_field_destroy(&s);
   tetcast_field_destroy(&c);

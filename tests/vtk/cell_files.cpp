@@ -34,7 +34,9 @@
 
 #include "gmsh_file.h"
 
-double value_at(const std::array<double, 3> &p) { return p[0] + 2 * p[1] + 4 * p[2]; }
+double value_at(const std::array<double, 3> &p) {
+  return p[0] + 2 * p[1] + 4 * p[2];
+}
 
 namespace {
 
@@ -45,13 +47,18 @@ using Order = std::vector<int>; // the place of node k of another program in VTK
 int fixed_type(int type) {
   switch (type) {
   case VTK_LAGRANGE_TETRAHEDRON:
-  case VTK_BEZIER_TETRAHEDRON: return VTK_QUADRATIC_TETRA;
+  case VTK_BEZIER_TETRAHEDRON:
+    return VTK_QUADRATIC_TETRA;
   case VTK_LAGRANGE_HEXAHEDRON:
-  case VTK_BEZIER_HEXAHEDRON: return VTK_TRIQUADRATIC_HEXAHEDRON;
+  case VTK_BEZIER_HEXAHEDRON:
+    return VTK_TRIQUADRATIC_HEXAHEDRON;
   case VTK_LAGRANGE_WEDGE:
-  case VTK_BEZIER_WEDGE: return VTK_BIQUADRATIC_QUADRATIC_WEDGE;
-  case VTK_POLYHEDRON: return VTK_PENTAGONAL_PRISM;
-  default: return type;
+  case VTK_BEZIER_WEDGE:
+    return VTK_BIQUADRATIC_QUADRATIC_WEDGE;
+  case VTK_POLYHEDRON:
+    return VTK_PENTAGONAL_PRISM;
+  default:
+    return type;
   }
 }
 
@@ -74,7 +81,8 @@ Grid grid_of(const CellSample &cell) {
       stream.push_back(static_cast<vtkIdType>(face.size()));
       stream.insert(stream.end(), face.begin(), face.end());
     }
-    grid->InsertNextCell(VTK_POLYHEDRON, static_cast<vtkIdType>(ids.size()), ids.data(), static_cast<vtkIdType>(cell.faces.size()), stream.data());
+    grid->InsertNextCell(VTK_POLYHEDRON, static_cast<vtkIdType>(ids.size()), ids.data(),
+                         static_cast<vtkIdType>(cell.faces.size()), stream.data());
   } else {
     grid->InsertNextCell(cell.type, static_cast<vtkIdType>(ids.size()), ids.data());
   }
@@ -84,7 +92,8 @@ Grid grid_of(const CellSample &cell) {
 
 FILE *create(const std::string &path) {
   FILE *file = std::fopen(path.c_str(), "w");
-  if (!file) std::perror(path.c_str());
+  if (!file)
+    std::perror(path.c_str());
   return file;
 }
 
@@ -103,8 +112,12 @@ template <typename Writer> std::string by_vtk(vtkDataSet *grid, const std::strin
   return writer->Write() ? path : "";
 }
 
-std::string write_vtu(const CellSample &cell, const std::string &folder) { return by_vtk<vtkXMLDataSetWriter>(grid_of(cell), folder + "/a.vtu"); }
-std::string write_legacy(const CellSample &cell, const std::string &folder) { return by_vtk<vtkDataSetWriter>(grid_of(cell), folder + "/a.vtk"); }
+std::string write_vtu(const CellSample &cell, const std::string &folder) {
+  return by_vtk<vtkXMLDataSetWriter>(grid_of(cell), folder + "/a.vtu");
+}
+std::string write_legacy(const CellSample &cell, const std::string &folder) {
+  return by_vtk<vtkDataSetWriter>(grid_of(cell), folder + "/a.vtk");
+}
 
 std::string write_list(const CellSample &cell, const std::string &folder, const char *name, const char *text) {
   write_vtu(cell, folder);
@@ -113,18 +126,25 @@ std::string write_list(const CellSample &cell, const std::string &folder, const 
 }
 
 std::string write_pieces(const CellSample &cell, const std::string &folder) {
-  return write_list(cell, folder, "a.pvtu", "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\"><PUnstructuredGrid GhostLevel=\"0\"><Piece Source=\"a.vtu\"/></PUnstructuredGrid></VTKFile>\n");
+  return write_list(cell, folder, "a.pvtu",
+                    "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\"><PUnstructuredGrid GhostLevel=\"0\"><Piece "
+                    "Source=\"a.vtu\"/></PUnstructuredGrid></VTKFile>\n");
 }
 std::string write_blocks(const CellSample &cell, const std::string &folder) {
-  return write_list(cell, folder, "a.vtm", "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet><DataSet index=\"0\" file=\"a.vtu\"/></vtkMultiBlockDataSet></VTKFile>\n");
+  return write_list(cell, folder, "a.vtm",
+                    "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet><DataSet index=\"0\" "
+                    "file=\"a.vtu\"/></vtkMultiBlockDataSet></VTKFile>\n");
 }
 std::string write_series(const CellSample &cell, const std::string &folder) {
-  return write_list(cell, folder, "a.pvd", "<VTKFile type=\"Collection\" version=\"0.1\"><Collection><DataSet timestep=\"1\" file=\"a.vtu\"/></Collection></VTKFile>\n");
+  return write_list(cell, folder, "a.pvd",
+                    "<VTKFile type=\"Collection\" version=\"0.1\"><Collection><DataSet timestep=\"1\" "
+                    "file=\"a.vtu\"/></Collection></VTKFile>\n");
 }
 
 // Structured grids are of one kind of cell.
 std::string write_structured(const CellSample &cell, const std::string &folder) {
-  if (cell.type != VTK_HEXAHEDRON) return "";
+  if (cell.type != VTK_HEXAHEDRON)
+    return "";
   vtkNew<vtkImageData> image;
   image->SetDimensions(2, 2, 2);
   image->SetOrigin(cell.points[0].data());
@@ -141,7 +161,8 @@ std::string write_structured(const CellSample &cell, const std::string &folder) 
 // ── text ──
 
 std::string write_tetgen(const CellSample &cell, const std::string &folder) {
-  if (cell.type != VTK_TETRA) return "";
+  if (cell.type != VTK_TETRA)
+    return "";
   FILE *file = create(folder + "/a.node");
   std::fprintf(file, "4 3 1 0\n");
   for (int i = 0; i < 4; ++i) {
@@ -154,60 +175,85 @@ std::string write_tetgen(const CellSample &cell, const std::string &folder) {
 }
 
 std::string write_ensight(const CellSample &cell, const std::string &folder) {
-  static const std::map<int, const char *> names = {
-      {VTK_TETRA, "tetra4"},           {VTK_PYRAMID, "pyramid5"},            {VTK_WEDGE, "penta6"},           {VTK_HEXAHEDRON, "hexa8"}, {VTK_QUADRATIC_TETRA, "tetra10"},
-      {VTK_QUADRATIC_PYRAMID, "pyramid13"}, {VTK_QUADRATIC_WEDGE, "penta15"}, {VTK_QUADRATIC_HEXAHEDRON, "hexa20"}, {VTK_POLYHEDRON, "nfaced"}};
+  static const std::map<int, const char *> names = {{VTK_TETRA, "tetra4"},
+                                                    {VTK_PYRAMID, "pyramid5"},
+                                                    {VTK_WEDGE, "penta6"},
+                                                    {VTK_HEXAHEDRON, "hexa8"},
+                                                    {VTK_QUADRATIC_TETRA, "tetra10"},
+                                                    {VTK_QUADRATIC_PYRAMID, "pyramid13"},
+                                                    {VTK_QUADRATIC_WEDGE, "penta15"},
+                                                    {VTK_QUADRATIC_HEXAHEDRON, "hexa20"},
+                                                    {VTK_POLYHEDRON, "nfaced"}};
   const auto name = names.find(cell.type);
-  if (name == names.end()) return "";
+  if (name == names.end())
+    return "";
   FILE *file = create(folder + "/a.geo");
-  std::fprintf(file, "a\nb\nnode id assign\nelement id assign\npart\n         1\ncell\ncoordinates\n%10zu\n", cell.points.size());
+  std::fprintf(file, "a\nb\nnode id assign\nelement id assign\npart\n         1\ncell\ncoordinates\n%10zu\n",
+               cell.points.size());
   for (size_t k = 0; k < 3; ++k) {
-    for (const auto &p : cell.points) std::fprintf(file, "%12.5e\n", p[k]);
+    for (const auto &p : cell.points)
+      std::fprintf(file, "%12.5e\n", p[k]);
   }
   std::fprintf(file, "%s\n%10d\n", name->second, 1);
   if (cell.type == VTK_POLYHEDRON) {
     std::fprintf(file, "%10zu\n", cell.faces.size());
-    for (const auto &face : cell.faces) std::fprintf(file, "%10zu\n", face.size());
+    for (const auto &face : cell.faces)
+      std::fprintf(file, "%10zu\n", face.size());
     for (const auto &face : cell.faces) {
-      for (int corner : face) std::fprintf(file, "%10d", corner + 1);
+      for (int corner : face)
+        std::fprintf(file, "%10d", corner + 1);
       std::fprintf(file, "\n");
     }
   } else {
-    for (size_t i = 0; i < cell.points.size(); ++i) std::fprintf(file, "%10zu", i + 1);
+    for (size_t i = 0; i < cell.points.size(); ++i)
+      std::fprintf(file, "%10zu", i + 1);
     std::fprintf(file, "\n");
   }
   std::fclose(file);
   file = create(folder + "/a.s");
   std::fprintf(file, "s\npart\n         1\ncoordinates\n");
-  for (const auto &p : cell.points) std::fprintf(file, "%12.5e\n", value_at(p));
+  for (const auto &p : cell.points)
+    std::fprintf(file, "%12.5e\n", value_at(p));
   std::fclose(file);
-  write_text(folder + "/a.case", "FORMAT\ntype: ensight gold\n\nGEOMETRY\nmodel: a.geo\n\nVARIABLE\nscalar per node: s a.s\n");
+  write_text(folder + "/a.case",
+             "FORMAT\ntype: ensight gold\n\nGEOMETRY\nmodel: a.geo\n\nVARIABLE\nscalar per node: s a.s\n");
   return folder + "/a.case";
 }
 
 std::string write_openfoam(const CellSample &cell, const std::string &folder) {
-  if (cell.faces.empty() || cell.type == VTK_VOXEL) return "";
-  if (cell.type == VTK_PENTAGONAL_PRISM || cell.type == VTK_HEXAGONAL_PRISM) return ""; // are polyhedra there
-  for (const char *name : {"/system", "/constant", "/constant/polyMesh", "/0"}) mkdir((folder + name).c_str(), 0700);
+  if (cell.faces.empty() || cell.type == VTK_VOXEL)
+    return "";
+  if (cell.type == VTK_PENTAGONAL_PRISM || cell.type == VTK_HEXAGONAL_PRISM)
+    return ""; // are polyhedra there
+  for (const char *name : {"/system", "/constant", "/constant/polyMesh", "/0"})
+    mkdir((folder + name).c_str(), 0700);
   const auto head = [](const std::string &kind, const std::string &object) {
     return "FoamFile\n{\n version 2.0;\n format ascii;\n class " + kind + ";\n object " + object + ";\n}\n";
   };
-  write_text(folder + "/system/controlDict", head("dictionary", "controlDict") + "startFrom startTime;\nstartTime 0;\nstopAt endTime;\nendTime 1;\ndeltaT 1;\nwriteControl runTime;\nwriteInterval 1;\n");
+  write_text(folder + "/system/controlDict", head("dictionary", "controlDict") +
+                                                 "startFrom startTime;\nstartTime 0;\nstopAt endTime;\nendTime "
+                                                 "1;\ndeltaT 1;\nwriteControl runTime;\nwriteInterval 1;\n");
   std::string points, faces, owners;
-  for (const auto &p : cell.points) points += "(" + std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]) + ")\n";
+  for (const auto &p : cell.points)
+    points += "(" + std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]) + ")\n";
   for (const auto &face : cell.faces) {
     faces += std::to_string(face.size()) + "(";
-    for (int corner : face) faces += std::to_string(corner) + " ";
+    for (int corner : face)
+      faces += std::to_string(corner) + " ";
     faces += ")\n";
     owners += "0\n";
   }
   const std::string mesh = folder + "/constant/polyMesh/", count = std::to_string(cell.faces.size());
-  write_text(mesh + "points", head("vectorField", "points") + std::to_string(cell.points.size()) + "\n(\n" + points + ")\n");
+  write_text(mesh + "points",
+             head("vectorField", "points") + std::to_string(cell.points.size()) + "\n(\n" + points + ")\n");
   write_text(mesh + "faces", head("faceList", "faces") + count + "\n(\n" + faces + ")\n");
   write_text(mesh + "owner", head("labelList", "owner") + count + "\n(\n" + owners + ")\n");
   write_text(mesh + "neighbour", head("labelList", "neighbour") + "0\n(\n)\n");
-  write_text(mesh + "boundary", head("polyBoundaryMesh", "boundary") + "1\n(\nwalls\n{\n type wall;\n nFaces " + count + ";\n startFace 0;\n}\n)\n");
-  write_text(folder + "/0/p", head("volScalarField", "p") + "dimensions [0 2 -2 0 0 0 0];\ninternalField uniform 7;\nboundaryField\n{\n walls\n {\n type zeroGradient;\n }\n}\n");
+  write_text(mesh + "boundary", head("polyBoundaryMesh", "boundary") + "1\n(\nwalls\n{\n type wall;\n nFaces " + count +
+                                    ";\n startFace 0;\n}\n)\n");
+  write_text(folder + "/0/p", head("volScalarField", "p") +
+                                  "dimensions [0 2 -2 0 0 0 0];\ninternalField uniform 7;\nboundaryField\n{\n "
+                                  "walls\n {\n type zeroGradient;\n }\n}\n");
   write_text(folder + "/case.foam", "");
   return folder + "/case.foam";
 }
@@ -229,14 +275,16 @@ std::string write_gmsh(const CellSample &cell, const std::string &folder) {
       {VTK_WEDGE, {6, same(6)}},
       {VTK_PYRAMID, {7, same(5)}},
       {VTK_QUADRATIC_TETRA, {11, {0, 1, 2, 3, 4, 5, 6, 7, 9, 8}}},
-      {VTK_TRIQUADRATIC_HEXAHEDRON, {12, {0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 16, 9, 17, 10, 18, 19, 12, 15, 13, 14, 24, 22, 20, 21, 23, 25, 26}}},
+      {VTK_TRIQUADRATIC_HEXAHEDRON,
+       {12, {0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 16, 9, 17, 10, 18, 19, 12, 15, 13, 14, 24, 22, 20, 21, 23, 25, 26}}},
       {VTK_BIQUADRATIC_QUADRATIC_WEDGE, {13, {0, 1, 2, 3, 4, 5, 6, 8, 12, 7, 13, 14, 9, 11, 10, 15, 17, 16}}},
       {VTK_TRIQUADRATIC_PYRAMID, {14, {0, 1, 2, 3, 4, 5, 8, 9, 6, 10, 7, 11, 12, 13}}},
       {VTK_QUADRATIC_HEXAHEDRON, {17, {0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 16, 9, 17, 10, 18, 19, 12, 15, 13, 14}}},
       {VTK_QUADRATIC_WEDGE, {18, {0, 1, 2, 3, 4, 5, 6, 8, 12, 7, 13, 14, 9, 11, 10}}},
       {VTK_QUADRATIC_PYRAMID, {19, {0, 1, 2, 3, 4, 5, 8, 9, 6, 10, 7, 11, 12}}}};
   const auto type = types.find(cell.type);
-  if (type == types.end()) return "";
+  if (type == types.end())
+    return "";
   const std::string path = folder + "/a.msh";
   std::vector<int64_t> tags;
   std::vector<double> values;
@@ -261,7 +309,8 @@ std::string write_gmsh(const CellSample &cell, const std::string &folder) {
 
 std::string write_exodus(const CellSample &cell, const std::string &folder) {
 #ifdef SAMPLES_EXODUS
-  // Cells that the writer knows. It leaves the order of nodes as it is, where Exodus has the edges between top and bottom before the top's.
+  // Cells that the writer knows. It leaves the order of nodes as it is, where Exodus has the edges between top and
+  // bottom before the top's.
   static const std::map<int, Order> orders = {
       {VTK_TETRA, same(4)},
       {VTK_HEXAHEDRON, same(8)},
@@ -272,9 +321,11 @@ std::string write_exodus(const CellSample &cell, const std::string &folder) {
       {VTK_QUADRATIC_WEDGE, {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11}},
       {VTK_QUADRATIC_PYRAMID, same(13)}};
   const auto order = orders.find(cell.type);
-  if (order == orders.end()) return "";
+  if (order == orders.end())
+    return "";
   CellSample turned = {cell.type, {}, {}, 0};
-  for (int k : order->second) turned.points.push_back(cell.points[static_cast<size_t>(k)]);
+  for (int k : order->second)
+    turned.points.push_back(cell.points[static_cast<size_t>(k)]);
   return by_vtk<vtkExodusIIWriter>(grid_of(turned), folder + "/a.ex2");
 #else
   (void)cell, (void)folder;
@@ -295,7 +346,8 @@ template <typename T> void put(hid_t group, const char *name, hid_t type, const 
 
 std::string write_hdf(const CellSample &cell, const std::string &folder) {
 #ifdef SAMPLES_HDF
-  if (cell.type == VTK_POLYHEDRON) return ""; // this version of the format has none
+  if (cell.type == VTK_POLYHEDRON)
+    return ""; // this version of the format has none
   const std::string path = folder + "/a.vtkhdf";
   const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   const hid_t group = H5Gcreate2(file, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
@@ -354,15 +406,19 @@ std::string write_cgns(const CellSample &cell, const std::string &folder) {
       {VTK_QUADRATIC_TETRA, {CGNS_ENUMV(TETRA_10), same(10)}},
       {VTK_QUADRATIC_PYRAMID, {CGNS_ENUMV(PYRA_13), same(13)}},
       {VTK_QUADRATIC_WEDGE, {CGNS_ENUMV(PENTA_15), {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11}}},
-      {VTK_BIQUADRATIC_QUADRATIC_WEDGE, {CGNS_ENUMV(PENTA_18), {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15, 16, 17}}},
-      {VTK_QUADRATIC_HEXAHEDRON, {CGNS_ENUMV(HEXA_20), {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15}}},
-      {VTK_TRIQUADRATIC_HEXAHEDRON,
-       {CGNS_ENUMV(HEXA_27), {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15, 24, 22, 21, 23, 20, 25, 26}}}};
+      {VTK_BIQUADRATIC_QUADRATIC_WEDGE,
+       {CGNS_ENUMV(PENTA_18), {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15, 16, 17}}},
+      {VTK_QUADRATIC_HEXAHEDRON,
+       {CGNS_ENUMV(HEXA_20), {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15}}},
+      {VTK_TRIQUADRATIC_HEXAHEDRON, {CGNS_ENUMV(HEXA_27), {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 16, 17,
+                                                           18, 19, 12, 13, 14, 15, 24, 22, 21, 23, 20, 25, 26}}}};
   const auto type = types.find(cell.type);
-  if (type == types.end() && cell.type != VTK_POLYHEDRON) return "";
+  if (type == types.end() && cell.type != VTK_POLYHEDRON)
+    return "";
   const std::string path = folder + "/a.cgns";
   int file, base, zone, id, solution;
-  if (cg_open(path.c_str(), CG_MODE_WRITE, &file) != CG_OK) return "";
+  if (cg_open(path.c_str(), CG_MODE_WRITE, &file) != CG_OK)
+    return "";
   const auto count = cell.points.size();
   const cgsize_t sizes[3] = {static_cast<cgsize_t>(count), 1, 0};
   cg_base_write(file, "base", 3, 3, &base);
@@ -370,26 +426,31 @@ std::string write_cgns(const CellSample &cell, const std::string &folder) {
   std::vector<double> values(count);
   const char *const axes[3] = {"CoordinateX", "CoordinateY", "CoordinateZ"};
   for (size_t k = 0; k < 3; ++k) {
-    for (size_t i = 0; i < count; ++i) values[i] = cell.points[i][k];
+    for (size_t i = 0; i < count; ++i)
+      values[i] = cell.points[i][k];
     cg_coord_write(file, base, zone, CGNS_ENUMV(RealDouble), axes[k], values.data(), &id);
   }
   if (cell.type == VTK_POLYHEDRON) {
     const auto faces = static_cast<cgsize_t>(cell.faces.size());
     std::vector<cgsize_t> corners, ends = {0}, sides, side_ends = {0, faces};
     for (const auto &face : cell.faces) {
-      for (int corner : face) corners.push_back(corner + 1);
+      for (int corner : face)
+        corners.push_back(corner + 1);
       ends.push_back(static_cast<cgsize_t>(corners.size()));
       sides.push_back(static_cast<cgsize_t>(sides.size()) + 1);
     }
     cg_poly_section_write(file, base, zone, "faces", CGNS_ENUMV(NGON_n), 1, faces, 0, corners.data(), ends.data(), &id);
-    cg_poly_section_write(file, base, zone, "cells", CGNS_ENUMV(NFACE_n), faces + 1, faces + 1, 0, sides.data(), side_ends.data(), &id);
+    cg_poly_section_write(file, base, zone, "cells", CGNS_ENUMV(NFACE_n), faces + 1, faces + 1, 0, sides.data(),
+                          side_ends.data(), &id);
   } else {
     std::vector<cgsize_t> nodes;
-    for (int k : type->second.order) nodes.push_back(k + 1);
+    for (int k : type->second.order)
+      nodes.push_back(k + 1);
     cg_section_write(file, base, zone, "cells", type->second.cgns, 1, 1, 0, nodes.data(), &id);
   }
   cg_sol_write(file, base, zone, "solution", CGNS_ENUMV(Vertex), &solution);
-  for (size_t i = 0; i < count; ++i) values[i] = value_at(cell.points[i]);
+  for (size_t i = 0; i < count; ++i)
+    values[i] = value_at(cell.points[i]);
   cg_field_write(file, base, zone, solution, CGNS_ENUMV(RealDouble), "s", values.data(), &id);
   return cg_close(file) == CG_OK ? path : "";
 #else
@@ -404,23 +465,32 @@ CellSample cell_sample(int type) {
   const auto own = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(fixed_type(type)));
   CellSample cell = {type, {}, {}, 0};
   const double *p = own->GetParametricCoords();
-  for (int i = 0; i < own->GetNumberOfPoints(); ++i, p += 3) cell.points.push_back({p[0] - 0.5, p[1] - 0.25, p[2] + 0.125});
-  if (type == VTK_QUADRATIC_PYRAMID || type == VTK_TRIQUADRATIC_PYRAMID) { // whose parameters are not those of a straight one
+  for (int i = 0; i < own->GetNumberOfPoints(); ++i, p += 3)
+    cell.points.push_back({p[0] - 0.5, p[1] - 0.25, p[2] + 0.125});
+  if (type == VTK_QUADRATIC_PYRAMID ||
+      type == VTK_TRIQUADRATIC_PYRAMID) { // whose parameters are not those of a straight one
     static const size_t ends[8][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}};
     for (size_t e = 0; e < 8; ++e) {
-      for (size_t k = 0; k < 3; ++k) cell.points[5 + e][k] = (cell.points[ends[e][0]][k] + cell.points[ends[e][1]][k]) / 2;
+      for (size_t k = 0; k < 3; ++k)
+        cell.points[5 + e][k] = (cell.points[ends[e][0]][k] + cell.points[ends[e][1]][k]) / 2;
     }
   }
   switch (fixed_type(type)) {
   case VTK_TETRA:
-  case VTK_QUADRATIC_TETRA: cell.volume = 1.0 / 6; break;
+  case VTK_QUADRATIC_TETRA:
+    cell.volume = 1.0 / 6;
+    break;
   case VTK_PYRAMID:
   case VTK_QUADRATIC_PYRAMID:
-  case VTK_TRIQUADRATIC_PYRAMID: cell.volume = (cell.points[4][2] - cell.points[0][2]) / 3; break;
+  case VTK_TRIQUADRATIC_PYRAMID:
+    cell.volume = (cell.points[4][2] - cell.points[0][2]) / 3;
+    break;
   case VTK_WEDGE:
   case VTK_QUADRATIC_WEDGE:
   case VTK_QUADRATIC_LINEAR_WEDGE:
-  case VTK_BIQUADRATIC_QUADRATIC_WEDGE: cell.volume = 0.5; break;
+  case VTK_BIQUADRATIC_QUADRATIC_WEDGE:
+    cell.volume = 0.5;
+    break;
   case VTK_PENTAGONAL_PRISM:
   case VTK_HEXAGONAL_PRISM: {
     const size_t n = cell.points.size() / 2;
@@ -430,22 +500,27 @@ CellSample cell_sample(int type) {
     }
     break;
   }
-  default: cell.volume = 1;
+  default:
+    cell.volume = 1;
   }
-  for (vtkIdType i = 0; i < own->GetNumberOfPoints(); ++i) own->PointIds->SetId(i, i);
+  for (vtkIdType i = 0; i < own->GetNumberOfPoints(); ++i)
+    own->PointIds->SetId(i, i);
   const bool straight = own->IsLinear() && type != VTK_VOXEL;
   for (int i = 0; straight && i < own->GetNumberOfFaces(); ++i) {
     cell.faces.emplace_back();
-    for (const vtkIdType corner : *own->GetFace(i)->PointIds) cell.faces.back().push_back(static_cast<int>(corner));
+    for (const vtkIdType corner : *own->GetFace(i)->PointIds)
+      cell.faces.back().push_back(static_cast<int>(corner));
   }
   return cell;
 }
 
 std::string write_cell(const CellSample &cell, const std::string &extension, const std::string &folder) {
   static const std::map<std::string, std::string (*)(const CellSample &, const std::string &)> writers = {
-      {".vtu", write_vtu},      {".vti", write_structured}, {".pvtu", write_pieces}, {".vtm", write_blocks}, {".vtk", write_legacy}, {".pvd", write_series},
-      {".ex2", write_exodus},   {".vtkhdf", write_hdf},     {".case", write_ensight}, {".cgns", write_cgns}, {".foam", write_openfoam}, {".msh", write_gmsh},
+      {".vtu", write_vtu},      {".vti", write_structured}, {".pvtu", write_pieces},   {".vtm", write_blocks},
+      {".vtk", write_legacy},   {".pvd", write_series},     {".ex2", write_exodus},    {".vtkhdf", write_hdf},
+      {".case", write_ensight}, {".cgns", write_cgns},      {".foam", write_openfoam}, {".msh", write_gmsh},
       {".node", write_tetgen}};
   const auto writer = writers.find(extension);
-  return writer == writers.end() ? "?" : writer->second(cell, folder); // "?": can't be read, so that a new format is noticed
+  return writer == writers.end() ? "?"
+                                 : writer->second(cell, folder); // "?": can't be read, so that a new format is noticed
 }

@@ -34,7 +34,8 @@ static void remember(void *user, TetcastSeverity severity, const char *text) {
   fixture->warnings += severity == TETCAST_SEVERITY_WARNING;
   if (severity == TETCAST_SEVERITY_WARNING)
     snprintf(fixture->warning, sizeof fixture->warning, "%s", text);
-  if (severity != TETCAST_SEVERITY_ERROR) return;
+  if (severity != TETCAST_SEVERITY_ERROR)
+    return;
   ++fixture->errors;
   snprintf(fixture->message, sizeof fixture->message, "%s", text);
 }
@@ -62,7 +63,8 @@ static inline int empty_folder(const Fixture *fixture) {
   DIR *folder = opendir(fixture->folder);
   assert_non_null(folder);
   for (struct dirent *entry = readdir(folder); entry; entry = readdir(folder)) {
-    if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0) continue;
+    if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0)
+      continue;
     char path[1024];
     snprintf(path, sizeof path, "%s/%s", fixture->folder, entry->d_name);
     unlink(path);
@@ -113,7 +115,8 @@ static inline char *contents(const char *path, size_t *size) {
 /* A path in the folder of datasets by others; the test is skipped when that is missing. */
 static inline const char *data_path(Fixture *fixture, const char *name) {
   const char *folder = getenv("TETCAST_DATA");
-  if (folder) snprintf(fixture->path, sizeof fixture->path, "%s/%s", folder, name);
+  if (folder)
+    snprintf(fixture->path, sizeof fixture->path, "%s/%s", folder, name);
   if (!folder || access(fixture->path, R_OK) != 0) {
     print_message("skipped: no %s in TETCAST_DATA\n", name);
     skip();
@@ -131,7 +134,8 @@ static inline int each_file(Fixture *fixture, const char *folder, const char *en
   assert_non_null(files);
   for (struct dirent *entry = readdir(files); entry; entry = readdir(files)) {
     const size_t length = strlen(entry->d_name), tail = strlen(ending);
-    if (entry->d_name[0] == '.' || length <= tail || strcmp(entry->d_name + length - tail, ending) != 0) continue;
+    if (entry->d_name[0] == '.' || length <= tail || strcmp(entry->d_name + length - tail, ending) != 0)
+      continue;
     snprintf(path, sizeof path, "%s/%s", base, entry->d_name);
     use(fixture, path);
     ++count;
@@ -145,7 +149,8 @@ static inline TetcastDataset *read_good(Fixture *fixture, const char *path) {
   fixture->errors = 0;
   fixture->message[0] = '\0';
   const TetcastStatus status = tetcast_dataset_read(fixture->context, path, NULL, &dataset);
-  if (status) print_error("%s\n", fixture->message);
+  if (status)
+    print_error("%s\n", fixture->message);
   assert_int_equal(status, TETCAST_OK);
   assert_non_null(dataset);
   assert_int_equal(fixture->errors, 0);

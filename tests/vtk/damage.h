@@ -11,14 +11,16 @@ static inline TetcastStatus use(Fixture *fixture, const char *path) {
   fixture->errors = 0;
   const TetcastStatus status = tetcast_dataset_read(fixture->context, path, NULL, &dataset);
   assert_int_equal(fixture->errors, status != TETCAST_OK);
-  if (status) return status;
+  if (status)
+    return status;
   TetcastMesh *mesh;
   assert_int_equal(tetcast_dataset_mesh(dataset, &mesh), TETCAST_OK);
   TetcastDatasetArray array;
   for (int i = 0; tetcast_dataset_array(dataset, i, &array); ++i) {
     TetcastField *field;
     double range[2];
-    if (tetcast_dataset_field(dataset, array.name, &field, NULL)) continue;
+    if (tetcast_dataset_field(dataset, array.name, &field, NULL))
+      continue;
     tetcast_field_range(field, range, NULL);
     tetcast_field_destroy(&field);
   }

@@ -29,56 +29,72 @@ static inline void gmsh_bytes(GmshFile *to, const void *value, size_t size) {
   const unsigned char *bytes = (const unsigned char *)value;
   const uint16_t one = 1;
   const int little = *(const unsigned char *)&one;
-  for (size_t i = 0; i < size; ++i) fputc(bytes[(to->encoding == GMSH_LITTLE) == little ? i : size - 1 - i], to->file);
+  for (size_t i = 0; i < size; ++i)
+    fputc(bytes[(to->encoding == GMSH_LITTLE) == little ? i : size - 1 - i], to->file);
 }
 
 static inline void gmsh_int(GmshFile *to, int32_t value) {
-  if (to->encoding) gmsh_bytes(to, &value, sizeof value);
-  else fprintf(to->file, "%" PRId32 " ", value);
+  if (to->encoding)
+    gmsh_bytes(to, &value, sizeof value);
+  else
+    fprintf(to->file, "%" PRId32 " ", value);
 }
 
 /* Of nodes and elements, and counts: version 4 has them in eight bytes. */
 static inline void gmsh_size(GmshFile *to, int64_t value) {
-  if (to->version == 2) gmsh_int(to, (int32_t)value);
-  else if (to->encoding) gmsh_bytes(to, &value, sizeof value);
-  else fprintf(to->file, "%" PRId64 "\n", value);
+  if (to->version == 2)
+    gmsh_int(to, (int32_t)value);
+  else if (to->encoding)
+    gmsh_bytes(to, &value, sizeof value);
+  else
+    fprintf(to->file, "%" PRId64 "\n", value);
 }
 
 static inline void gmsh_double(GmshFile *to, double value) {
-  if (to->encoding) gmsh_bytes(to, &value, sizeof value);
-  else fprintf(to->file, "%.17g ", value);
+  if (to->encoding)
+    gmsh_bytes(to, &value, sizeof value);
+  else
+    fprintf(to->file, "%.17g ", value);
 }
 
 static inline GmshFile gmsh_open(const char *path, int version, GmshEncoding encoding) {
   GmshFile to = {fopen(path, "wb"), version, encoding};
   gmsh_text(&to, "$MeshFormat\n%s %d 8\n", version == 2 ? "2.2" : "4.1", encoding != GMSH_TEXT);
-  if (encoding) gmsh_int(&to, 1), gmsh_text(&to, "\n");
+  if (encoding)
+    gmsh_int(&to, 1), gmsh_text(&to, "\n");
   gmsh_text(&to, "$EndMeshFormat\n");
   return to;
 }
 
-/* One block; node i has number tags[i]. `parameters`: version 4 has as many more numbers after the coordinates, and calls the block one of
- * an entity of that dimension. */
+/* One block; node i has number tags[i]. `parameters`: version 4 has as many more numbers after the coordinates, and
+ * calls the block one of an entity of that dimension. */
 static inline void gmsh_nodes(GmshFile *to, int64_t count, const int64_t *tags, const double (*p)[3], int parameters) {
   gmsh_text(to, "$Nodes\n");
   if (to->version == 2) {
     gmsh_text(to, "%" PRId64 "\n", count);
   } else {
     const int64_t header[4] = {2, count, 1, 1 << 20};
-    for (int i = 0; i < 4; ++i) gmsh_size(to, header[i]);
-    for (int i = 0; i < 3; ++i) gmsh_int(to, i == 0 ? 2 : i); /* an empty block: dimension 2, entity 1, with parameters */
+    for (int i = 0; i < 4; ++i)
+      gmsh_size(to, header[i]);
+    for (int i = 0; i < 3; ++i)
+      gmsh_int(to, i == 0 ? 2 : i); /* an empty block: dimension 2, entity 1, with parameters */
     gmsh_size(to, 0);
     gmsh_int(to, parameters ? parameters : 3);
     gmsh_int(to, 1);
     gmsh_int(to, parameters > 0);
     gmsh_size(to, count);
-    for (int64_t i = 0; i < count; ++i) gmsh_size(to, tags[i]);
+    for (int64_t i = 0; i < count; ++i)
+      gmsh_size(to, tags[i]);
   }
   for (int64_t i = 0; i < count; ++i) {
-    if (to->version == 2) gmsh_size(to, tags[i]);
-    for (int k = 0; k < 3; ++k) gmsh_double(to, p[i][k]);
-    for (int k = 0; to->version == 4 && k < parameters; ++k) gmsh_double(to, 0.5);
-    if (!to->encoding) gmsh_text(to, "\n");
+    if (to->version == 2)
+      gmsh_size(to, tags[i]);
+    for (int k = 0; k < 3; ++k)
+      gmsh_double(to, p[i][k]);
+    for (int k = 0; to->version == 4 && k < parameters; ++k)
+      gmsh_double(to, 0.5);
+    if (!to->encoding)
+      gmsh_text(to, "\n");
   }
   gmsh_text(to, "\n$EndNodes\n");
 }
@@ -92,17 +108,22 @@ typedef struct GmshElement {
 
 /* Surface 1 in no group, volumes 1 … count in these. Nothing in version 2. */
 static inline void gmsh_entities(GmshFile *to, int count, const int *groups) {
-  if (to->version == 2) return;
+  if (to->version == 2)
+    return;
   gmsh_text(to, "$Entities\n");
-  for (int dimension = 0; dimension < 4; ++dimension) gmsh_size(to, dimension == 0 ? 1 : dimension == 2 ? 1 : dimension == 3 ? count : 0);
+  for (int dimension = 0; dimension < 4; ++dimension)
+    gmsh_size(to, dimension == 0 ? 1 : dimension == 2 ? 1 : dimension == 3 ? count : 0);
   gmsh_int(to, 7);
-  for (int k = 0; k < 3; ++k) gmsh_double(to, 0);
+  for (int k = 0; k < 3; ++k)
+    gmsh_double(to, 0);
   gmsh_size(to, 0);
   for (int i = 0; i <= count; ++i) {
     gmsh_int(to, i == 0 ? 1 : i);
-    for (int k = 0; k < 6; ++k) gmsh_double(to, k);
+    for (int k = 0; k < 6; ++k)
+      gmsh_double(to, k);
     gmsh_size(to, i > 0 && groups[i - 1] ? 2 : 0);
-    if (i > 0 && groups[i - 1]) gmsh_int(to, groups[i - 1]), gmsh_int(to, 99);
+    if (i > 0 && groups[i - 1])
+      gmsh_int(to, groups[i - 1]), gmsh_int(to, 99);
     gmsh_size(to, 1); /* bounded by */
     gmsh_int(to, -7);
   }
@@ -116,7 +137,8 @@ static inline void gmsh_elements(GmshFile *to, int64_t count, const GmshElement 
     gmsh_text(to, "%" PRId64 "\n", count);
   } else {
     const int64_t header[4] = {count, count, 1, 1 << 20};
-    for (int i = 0; i < 4; ++i) gmsh_size(to, header[i]);
+    for (int i = 0; i < 4; ++i)
+      gmsh_size(to, header[i]);
   }
   for (int64_t i = 0; i < count; ++i) {
     const GmshElement *one = &elements[i];
@@ -128,26 +150,33 @@ static inline void gmsh_elements(GmshFile *to, int64_t count, const GmshElement 
       gmsh_size(to, one->tag);
     } else if (to->encoding) {
       const int32_t header[6] = {one->type, 1, 2, (int32_t)one->tag, one->group, one->entity};
-      for (int k = 0; k < 6; ++k) gmsh_int(to, header[k]);
+      for (int k = 0; k < 6; ++k)
+        gmsh_int(to, header[k]);
     } else {
       gmsh_text(to, "%" PRId64 " %d 2 %d %d ", one->tag, one->type, one->group, one->entity);
     }
-    for (int k = 0; k < one->nodes; ++k) gmsh_size(to, one->node[k]);
-    if (!to->encoding) gmsh_text(to, "\n");
+    for (int k = 0; k < one->nodes; ++k)
+      gmsh_size(to, one->node[k]);
+    if (!to->encoding)
+      gmsh_text(to, "\n");
   }
   gmsh_text(to, "\n$EndElements\n");
 }
 
 /* values: [count][components], or of "ElementNodeData" [count][nodes][components]. */
-static inline void gmsh_data(GmshFile *to, const char *section, const char *name, double time, int components, int64_t count,
-                             const int64_t *tags, int nodes, const double *values) {
-  gmsh_text(to, "$%s\n2\n\"%s\"\n\"scheme\"\n1\n%.17g\n3\n0\n%d\n%" PRId64 "\n", section, name, time, components, count);
+static inline void gmsh_data(GmshFile *to, const char *section, const char *name, double time, int components,
+                             int64_t count, const int64_t *tags, int nodes, const double *values) {
+  gmsh_text(to, "$%s\n2\n\"%s\"\n\"scheme\"\n1\n%.17g\n3\n0\n%d\n%" PRId64 "\n", section, name, time, components,
+            count);
   const int each = (nodes ? nodes : 1) * components;
   for (int64_t i = 0; i < count; ++i) {
     gmsh_int(to, (int32_t)tags[i]);
-    if (nodes) gmsh_int(to, nodes);
-    for (int k = 0; k < each; ++k) gmsh_double(to, values[i * each + k]);
-    if (!to->encoding) gmsh_text(to, "\n");
+    if (nodes)
+      gmsh_int(to, nodes);
+    for (int k = 0; k < each; ++k)
+      gmsh_double(to, values[i * each + k]);
+    if (!to->encoding)
+      gmsh_text(to, "\n");
   }
   gmsh_text(to, "\n$End%s\n", section);
 }

@@ -42,16 +42,20 @@ namespace {
 
 const int size[3] = {4, 3, 5};
 
-double value_at(const double *p) { return p[0] + 2 * p[1] + 4 * p[2]; }
+double value_at(const double *p) {
+  return p[0] + 2 * p[1] + 4 * p[2];
+}
 
 // Arrays s and c, of layers of cells from `first` on.
 void add_arrays(vtkDataSet *dataset, int first) {
   vtkNew<vtkDoubleArray> s;
   s->SetName("s");
-  for (vtkIdType i = 0; i < dataset->GetNumberOfPoints(); ++i) s->InsertNextValue(value_at(dataset->GetPoint(i)));
+  for (vtkIdType i = 0; i < dataset->GetNumberOfPoints(); ++i)
+    s->InsertNextValue(value_at(dataset->GetPoint(i)));
   vtkNew<vtkIntArray> c;
   c->SetName("c");
-  for (vtkIdType i = 0; i < dataset->GetNumberOfCells(); ++i) c->InsertNextValue(static_cast<int>(i) + 6 * first);
+  for (vtkIdType i = 0; i < dataset->GetNumberOfCells(); ++i)
+    c->InsertNextValue(static_cast<int>(i) + 6 * first);
   dataset->GetPointData()->AddArray(s);
   dataset->GetCellData()->AddArray(c);
 }
@@ -61,7 +65,8 @@ vtkSmartPointer<vtkPoints> box_points(int first, int end) {
   points->SetDataTypeToDouble();
   for (int k = first; k <= end; ++k) {
     for (int j = 0; j < size[1]; ++j) {
-      for (int i = 0; i < size[0]; ++i) points->InsertNextPoint(i, j, 0.5 * k);
+      for (int i = 0; i < size[0]; ++i)
+        points->InsertNextPoint(i, j, 0.5 * k);
     }
   }
   return points;
@@ -93,7 +98,8 @@ vtkSmartPointer<vtkStructuredGrid> structured() {
 }
 
 vtkSmartPointer<vtkDataSet> dataset_of(char kind) {
-  if (kind == 's') return structured();
+  if (kind == 's')
+    return structured();
   if (kind == 'i') {
     auto image = vtkSmartPointer<vtkImageData>::New();
     image->SetDimensions(size[0], size[1], size[2]);
@@ -105,10 +111,14 @@ vtkSmartPointer<vtkDataSet> dataset_of(char kind) {
   grid->SetDimensions(size[0], size[1], size[2]);
   for (int axis = 0; axis < 3; ++axis) {
     vtkNew<vtkDoubleArray> at;
-    for (int i = 0; i < size[axis]; ++i) at->InsertNextValue(axis == 2 ? 0.5 * i : i);
-    if (axis == 0) grid->SetXCoordinates(at);
-    if (axis == 1) grid->SetYCoordinates(at);
-    if (axis == 2) grid->SetZCoordinates(at);
+    for (int i = 0; i < size[axis]; ++i)
+      at->InsertNextValue(axis == 2 ? 0.5 * i : i);
+    if (axis == 0)
+      grid->SetXCoordinates(at);
+    if (axis == 1)
+      grid->SetYCoordinates(at);
+    if (axis == 2)
+      grid->SetZCoordinates(at);
   }
   add_arrays(grid, 0);
   return grid;
@@ -141,7 +151,8 @@ protected:
     auto *grid = vtkUnstructuredGrid::GetData(about);
     grid->ShallowCopy(layers(0, 4));
     auto *s = vtkDoubleArray::SafeDownCast(grid->GetPointData()->GetArray("s"));
-    for (vtkIdType i = 0; i < s->GetNumberOfTuples(); ++i) s->SetValue(i, time * s->GetValue(i));
+    for (vtkIdType i = 0; i < s->GetNumberOfTuples(); ++i)
+      s->SetValue(i, time * s->GetValue(i));
     grid->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
     return 1;
   }
@@ -156,17 +167,22 @@ void sample_structured(const char *path, char kind, SampleMode mode) {
     vtkNew<vtkDataSetWriter> writer;
     writer->SetFileName(path);
     writer->SetInputData(dataset);
-    if (mode == SAMPLE_ASCII) writer->SetFileTypeToASCII();
-    else writer->SetFileTypeToBinary();
+    if (mode == SAMPLE_ASCII)
+      writer->SetFileTypeToASCII();
+    else
+      writer->SetFileTypeToBinary();
     writer->Write();
     return;
   }
   vtkNew<vtkXMLDataSetWriter> writer;
   writer->SetFileName(path);
   writer->SetInputData(dataset);
-  writer->SetDataMode(mode == SAMPLE_ASCII ? vtkXMLWriter::Ascii : mode == SAMPLE_BINARY ? vtkXMLWriter::Binary : vtkXMLWriter::Appended);
+  writer->SetDataMode(mode == SAMPLE_ASCII    ? vtkXMLWriter::Ascii
+                      : mode == SAMPLE_BINARY ? vtkXMLWriter::Binary
+                                              : vtkXMLWriter::Appended);
   writer->SetEncodeAppendedData(mode == SAMPLE_APPENDED);
-  if (mode == SAMPLE_RAW) writer->SetCompressorTypeToNone();
+  if (mode == SAMPLE_RAW)
+    writer->SetCompressorTypeToNone();
   writer->Write();
 }
 
@@ -246,11 +262,13 @@ static void cgns_zone(int file, int base, const char *name, vtkUnstructuredGrid 
   int zone, solution, id;
   cgsize_t sizes[9] = {grid->GetNumberOfPoints(), grid->GetNumberOfCells(), 0};
   const cgsize_t box[9] = {4, 3, 3, 3, 2, 2, 0, 0, 0};
-  cg_zone_write(file, base, name, as_structured ? box : sizes, as_structured ? CGNS_ENUMV(Structured) : CGNS_ENUMV(Unstructured), &zone);
+  cg_zone_write(file, base, name, as_structured ? box : sizes,
+                as_structured ? CGNS_ENUMV(Structured) : CGNS_ENUMV(Unstructured), &zone);
   std::vector<double> values(static_cast<size_t>(sizes[0]));
   const char *const axes[3] = {"CoordinateX", "CoordinateY", "CoordinateZ"};
   for (int k = 0; k < 3; ++k) {
-    for (size_t i = 0; i < values.size(); ++i) values[i] = grid->GetPoint(static_cast<vtkIdType>(i))[k];
+    for (size_t i = 0; i < values.size(); ++i)
+      values[i] = grid->GetPoint(static_cast<vtkIdType>(i))[k];
     cg_coord_write(file, base, zone, CGNS_ENUMV(RealDouble), axes[k], values.data(), &id);
   }
   if (!as_structured) {
@@ -258,13 +276,15 @@ static void cgns_zone(int file, int base, const char *name, vtkUnstructuredGrid 
     vtkNew<vtkIdList> cell;
     for (vtkIdType i = 0; i < grid->GetNumberOfCells(); ++i) {
       grid->GetCellPoints(i, cell);
-      for (const vtkIdType point : *cell) corners.push_back(point + 1);
+      for (const vtkIdType point : *cell)
+        corners.push_back(point + 1);
     }
     cg_section_write(file, base, zone, "cells", CGNS_ENUMV(HEXA_8), 1, sizes[1], 0, corners.data(), &id);
   }
   cg_sol_write(file, base, zone, "solution", CGNS_ENUMV(Vertex), &solution);
   vtkDataArray *s = grid->GetPointData()->GetArray("s");
-  for (size_t i = 0; i < values.size(); ++i) values[i] = s->GetTuple1(static_cast<vtkIdType>(i));
+  for (size_t i = 0; i < values.size(); ++i)
+    values[i] = s->GetTuple1(static_cast<vtkIdType>(i));
   cg_field_write(file, base, zone, solution, CGNS_ENUMV(RealDouble), "s", values.data(), &id);
 }
 #endif
@@ -272,7 +292,8 @@ static void cgns_zone(int file, int base, const char *name, vtkUnstructuredGrid 
 bool sample_cgns(const char *path) {
 #ifdef SAMPLES_CGNS
   int file, base;
-  if (cg_open(path, CG_MODE_WRITE, &file) != CG_OK) return false;
+  if (cg_open(path, CG_MODE_WRITE, &file) != CG_OK)
+    return false;
   cg_base_write(file, "base", 3, 3, &base);
   cgns_zone(file, base, "lower", layers(0, 2), false);
   cgns_zone(file, base, "upper", layers(2, 4), true);

@@ -107,7 +107,7 @@ static void test_defects(void **state) {
        "gone.vtu: can't be opened"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-    const TetcastStatus status = strstr(cases[i].name, "pyramid")     ? TETCAST_ERROR_UNSUPPORTED
+    const TetcastStatus status = strstr(cases[i].name, "pyramid")            ? TETCAST_ERROR_UNSUPPORTED
                                  : strstr(cases[i].words, "can't be opened") ? TETCAST_ERROR_IO
                                                                              : TETCAST_ERROR_DATA;
     read_bad(fixture, text_file(fixture, cases[i].name, cases[i].text), status, cases[i].words);
@@ -161,8 +161,8 @@ static void test_silence(void **state) {
   TetcastDataset *dataset;
   const TetcastStatus first = tetcast_dataset_read(
       fixture->context, text_file(fixture, "a.vtu", XML("4", "1", FOUR CELLS("0 1 2", "4", "10"))), NULL, &dataset);
-  const TetcastStatus second =
-      tetcast_dataset_read(fixture->context, text_file(fixture, "a.vtk", POINTS "CELLS 1 5\n4 0 1 2 x\n"), NULL, &dataset);
+  const TetcastStatus second = tetcast_dataset_read(
+      fixture->context, text_file(fixture, "a.vtk", POINTS "CELLS 1 5\n4 0 1 2 x\n"), NULL, &dataset);
   fflush(stdout);
   fflush(stderr);
   dup2(out, 1);
@@ -201,13 +201,15 @@ static void test_truncation(void **state) {
       const char *path = file_of(fixture, legacy ? "cut.vtk" : "cut.vtu", bytes, size * part / 60);
       const TetcastStatus status = use(fixture, path);
       /* A legacy file may end between two sections. */
-      if (!legacy) assert_int_not_equal(status, TETCAST_OK);
+      if (!legacy)
+        assert_int_not_equal(status, TETCAST_OK);
     }
     /* The end of appended raw data, behind which only the closing tags follow. */
     for (size_t cut = 40; cut < 100; ++cut) {
       const char *path = file_of(fixture, legacy ? "cut.vtk" : "cut.vtu", bytes, size - cut);
       const TetcastStatus status = use(fixture, path);
-      if (!legacy && cut > 60) assert_int_not_equal(status, TETCAST_OK);
+      if (!legacy && cut > 60)
+        assert_int_not_equal(status, TETCAST_OK);
     }
     free(bytes);
   }

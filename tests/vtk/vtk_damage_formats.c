@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Files of the other formats, cut short and with bits and digits changed: an error or a mesh, soon and in little memory. */
+/* Files of the other formats, cut short and with bits and digits changed: an error or a mesh, soon and in little
+ * memory. */
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/ioctl.h>
@@ -19,7 +20,8 @@ static int streams[2] = {-1, -1}; /* the real standard output and error, while t
 
 static void restore_streams(void) {
   for (int i = 0; i < 2; ++i) {
-    if (streams[i] < 0) continue;
+    if (streams[i] < 0)
+      continue;
     dup2(streams[i], i + 1);
     close(streams[i]);
     streams[i] = -1;
@@ -30,7 +32,8 @@ static void hangs(int signal) {
   (void)signal;
   static const char text[] = "hangs: ";
   restore_streams();
-  if (write(2, text, sizeof text - 1) < 0 || write(2, last, strlen(last)) < 0 || write(2, "\n", 1) < 0) _exit(1);
+  if (write(2, text, sizeof text - 1) < 0 || write(2, last, strlen(last)) < 0 || write(2, "\n", 1) < 0)
+    _exit(1);
   _exit(1);
 }
 
@@ -84,7 +87,8 @@ static void damage(Fixture *fixture, const char *name, const char *opened, int t
         changed[at] = (char)(changed[at] ^ (1 << next_random(&seed) % 8));
         continue;
       }
-      for (int tries = 0; tries < 5000 && (bytes[at] < '0' || bytes[at] > '9'); ++tries) at = next_random(&seed) % range;
+      for (int tries = 0; tries < 5000 && (bytes[at] < '0' || bytes[at] > '9'); ++tries)
+        at = next_random(&seed) % range;
       changed[at] = "0123456789-"[next_random(&seed) % 11];
     }
     file_of(fixture, name, changed, size);
@@ -100,7 +104,8 @@ static void test_structured(void **state) {
   static const char *const names[] = {"i.vti", "r.vtr", "s.vts", "i.vtk", "r.vtk", "s.vtk"};
   for (int i = 0; i < 6; ++i) {
     for (int mode = SAMPLE_ASCII; mode <= SAMPLE_RAW; ++mode) {
-      if (i >= 3 && mode > SAMPLE_BINARY) break;
+      if (i >= 3 && mode > SAMPLE_BINARY)
+        break;
       sample_structured(in_folder(fixture, names[i]), names[i][0], (SampleMode)mode);
       damage(fixture, names[i], names[i], 40);
     }
@@ -112,16 +117,19 @@ static void test_lists(void **state) {
   sample_layers(in_folder(fixture, "a.vtu"), 0, 2, GHOST_TYPES);
   sample_layers(in_folder(fixture, "b.vtu"), 2, 4, GHOST_LEVELS);
   text_file(fixture, "p.pvtu",
-            "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\"><PUnstructuredGrid GhostLevel=\"1\"><Piece Source=\"a.vtu\"/>"
+            "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\"><PUnstructuredGrid GhostLevel=\"1\"><Piece "
+            "Source=\"a.vtu\"/>"
             "<Piece Source=\"b.vtu\"/></PUnstructuredGrid></VTKFile>\n");
   text_file(fixture, "t.pvd",
             "<VTKFile type=\"Collection\" version=\"0.1\"><Collection><DataSet timestep=\"1\" file=\"a.vtu\"/>"
             "<DataSet timestep=\"20\" file=\"b.vtu\"/></Collection></VTKFile>\n");
-  text_file(fixture, "t.series",
-            "{\"file-series-version\": \"1.0\", \"files\": [{\"name\": \"a.vtu\", \"time\": 1}, {\"name\": \"\\u0062.vtu\", "
-            "\"time\": 2e1}], \"x\": [true, null, [{}]]}\n");
+  text_file(
+      fixture, "t.series",
+      "{\"file-series-version\": \"1.0\", \"files\": [{\"name\": \"a.vtu\", \"time\": 1}, {\"name\": \"\\u0062.vtu\", "
+      "\"time\": 2e1}], \"x\": [true, null, [{}]]}\n");
   static const char *const lists[] = {"p.pvtu", "t.pvd", "t.series"};
-  for (int i = 0; i < 3; ++i) damage(fixture, lists[i], lists[i], 100);
+  for (int i = 0; i < 3; ++i)
+    damage(fixture, lists[i], lists[i], 100);
   damage(fixture, "a.vtu", "p.pvtu", 40);
   sample_blocks(in_folder(fixture, "m.vtm"));
   damage(fixture, "m.vtm", "m.vtm", 60);
@@ -164,7 +172,8 @@ static void test_ensight(void **state) {
   Fixture *fixture = *state;
   const char *path = write_ensight(fixture);
   TetcastDataset *dataset;
-  if (tetcast_dataset_read(fixture->context, path, NULL, &dataset) == TETCAST_ERROR_UNSUPPORTED) skip();
+  if (tetcast_dataset_read(fixture->context, path, NULL, &dataset) == TETCAST_ERROR_UNSUPPORTED)
+    skip();
   tetcast_dataset_destroy(&dataset);
   damage(fixture, "a.case", "a.case", 20);
   damage(fixture, "a.geo", "a.case", 20);
@@ -177,22 +186,31 @@ static void test_openfoam(void **state) {
   TetcastDataset *dataset;
   const bool known = tetcast_dataset_read(fixture->context, path, NULL, &dataset) != TETCAST_ERROR_UNSUPPORTED;
   tetcast_dataset_destroy(&dataset);
-  static const char *const names[] = {"system/controlDict", "constant/polyMesh/points", "constant/polyMesh/faces", "constant/polyMesh/owner",
-                                      "constant/polyMesh/neighbour", "constant/polyMesh/boundary", "0/p"};
-  for (int i = 0; known && i < 7; ++i) damage(fixture, names[i], "case.foam", 8);
+  static const char *const names[] = {"system/controlDict",
+                                      "constant/polyMesh/points",
+                                      "constant/polyMesh/faces",
+                                      "constant/polyMesh/owner",
+                                      "constant/polyMesh/neighbour",
+                                      "constant/polyMesh/boundary",
+                                      "0/p"};
+  for (int i = 0; known && i < 7; ++i)
+    damage(fixture, names[i], "case.foam", 8);
   remove_openfoam(fixture);
-  if (!known) skip();
+  if (!known)
+    skip();
 }
 
 static void test_exodus(void **state) {
   Fixture *fixture = *state;
-  if (!sample_exodus(in_folder(fixture, "box.ex2"))) skip();
+  if (!sample_exodus(in_folder(fixture, "box.ex2")))
+    skip();
   damage(fixture, "box.ex2", "box.ex2", 20);
 }
 
 static void test_cgns(void **state) {
   Fixture *fixture = *state;
-  if (!sample_cgns(in_folder(fixture, "box.cgns"))) skip();
+  if (!sample_cgns(in_folder(fixture, "box.cgns")))
+    skip();
   damage(fixture, "box.cgns", "box.cgns", 25);
 }
 
@@ -203,7 +221,8 @@ static void test_vtkhdf(void **state) {
   file_of(fixture, "can.hdf", bytes, size);
   free(bytes);
   TetcastDataset *dataset;
-  if (tetcast_dataset_read(fixture->context, fixture->path, NULL, &dataset) == TETCAST_ERROR_UNSUPPORTED) skip();
+  if (tetcast_dataset_read(fixture->context, fixture->path, NULL, &dataset) == TETCAST_ERROR_UNSUPPORTED)
+    skip();
   tetcast_dataset_destroy(&dataset);
   damage(fixture, "can.hdf", "can.hdf", 25);
 }
@@ -226,7 +245,8 @@ static void test_memory(void **state) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down_streams)
 
 int main(void) {
-  const struct CMUnitTest tests[] = {TEST(test_structured), TEST(test_lists), TEST(test_tetgen), TEST(test_gmsh), TEST(test_ensight), TEST(test_openfoam),
-                                     TEST(test_exodus),     TEST(test_cgns),  TEST(test_vtkhdf), TEST(test_memory)};
+  const struct CMUnitTest tests[] = {TEST(test_structured), TEST(test_lists),    TEST(test_tetgen), TEST(test_gmsh),
+                                     TEST(test_ensight),    TEST(test_openfoam), TEST(test_exodus), TEST(test_cgns),
+                                     TEST(test_vtkhdf),     TEST(test_memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -91,7 +91,8 @@ static void test_selectors(void **state) {
   Fixture *fixture = *state;
   const char *path = text_file(fixture, "mixed.vtk", mixed);
   TetcastDataset *dataset = NULL;
-  assert_int_equal(tetcast_dataset_read(fixture->context, path, &(TetcastDatasetDesc){0}, &dataset), TETCAST_ERROR_ARGUMENT);
+  assert_int_equal(tetcast_dataset_read(fixture->context, path, &(TetcastDatasetDesc){0}, &dataset),
+                   TETCAST_ERROR_ARGUMENT);
   assert_null(dataset);
   dataset = read_good(fixture, path);
   TetcastDatasetArray array;
@@ -345,14 +346,16 @@ static void assert_same_array(TetcastArray a, TetcastArray b, int components) {
 }
 
 static void compare_with_reference(Fixture *fixture, const char *path) {
-  if (strstr(path, "pieces")) return; /* parts of the whole */
+  if (strstr(path, "pieces"))
+    return; /* parts of the whole */
   /* The ASCII ones of the legacy format are rounded. */
   const bool exact = !strstr(path, "legacy42_ascii") && !strstr(path, "legacy51_ascii");
   TetcastDataset *dataset = read_good(fixture, path);
   TetcastMesh *a, *b;
   assert_int_equal(tetcast_dataset_mesh(reference, &a), TETCAST_OK);
   assert_int_equal(tetcast_dataset_mesh(dataset, &b), TETCAST_OK);
-  if (exact) assert_same_array(tetcast_mesh_vertices(a), tetcast_mesh_vertices(b), 3);
+  if (exact)
+    assert_same_array(tetcast_mesh_vertices(a), tetcast_mesh_vertices(b), 3);
   assert_int_equal(tetcast_mesh_vertex_count(a), tetcast_mesh_vertex_count(b));
   assert_int_equal(tetcast_mesh_tetrahedron_count(a), tetcast_mesh_tetrahedron_count(b));
   for (int64_t i = 0; i < tetcast_mesh_tetrahedron_count(a); ++i) {
@@ -366,7 +369,8 @@ static void compare_with_reference(Fixture *fixture, const char *path) {
     TetcastField *f, *g;
     assert_int_equal(tetcast_dataset_field(reference, selectors[i], &f, NULL), TETCAST_OK);
     assert_int_equal(tetcast_dataset_field(dataset, selectors[i], &g, NULL), TETCAST_OK);
-    if (exact) assert_same_array(tetcast_field_values(f), tetcast_field_values(g), 1);
+    if (exact)
+      assert_same_array(tetcast_field_values(f), tetcast_field_values(g), 1);
     for (int64_t j = 0; j < tetcast_field_values(f).count; ++j) {
       assert_true(fabs(tetcast_field_value(f, j) - tetcast_field_value(g, j)) < 1e-10);
     }
@@ -404,7 +408,8 @@ static void test_pieces(void **state) {
     double range[2], sum = 0;
     tetcast_field_range(field, range, NULL);
     assert_true(range[0] == 0 && range[1] == 1521);
-    for (int64_t j = 0; j < 1522; ++j) sum += tetcast_field_value(field, j);
+    for (int64_t j = 0; j < 1522; ++j)
+      sum += tetcast_field_value(field, j);
     assert_true(sum == 1521.0 * 1522 / 2);
     tetcast_field_destroy(&field);
     tetcast_mesh_destroy(&mesh);
@@ -441,7 +446,8 @@ static void read_any(Fixture *fixture, const char *path) {
 static void test_others_files(void **state) {
   Fixture *fixture = *state;
   static const char *const folders[] = {"volumes", "cells", "cells/cube_pvtu", "defects"};
-  for (int i = 0; i < 4; ++i) each_file(fixture, folders[i], "", read_any);
+  for (int i = 0; i < 4; ++i)
+    each_file(fixture, folders[i], "", read_any);
 }
 
 /* Where cells meet, the cuts agree: the boundary is that of the cells. Volumes are those of the cells. */
@@ -452,12 +458,17 @@ static void test_conforming(void **state) {
     int64_t boundary_faces;
     double volume;
   } cases[] = {
-      {"volumes/disk_out_ref.vtu", 2 * 1988, 0},     {"volumes/fire_ug.vtu", 2 * 3546, 0},
-      {"cells/QuadraticTetra.vtu", 4 * 48, 8},       {"cells/hybridHexPrismMesh.vtk", 632, 1},
-      {"cells/pebi3d_with_properties.vtu", 2056, 1}, {"cells/supportedElements.vtk", 238, 119.491291493},
+      {"volumes/disk_out_ref.vtu", 2 * 1988, 0},
+      {"volumes/fire_ug.vtu", 2 * 3546, 0},
+      {"cells/QuadraticTetra.vtu", 4 * 48, 8},
+      {"cells/hybridHexPrismMesh.vtk", 632, 1},
+      {"cells/pebi3d_with_properties.vtu", 2056, 1},
+      {"cells/supportedElements.vtk", 238, 119.491291493},
       {"cells/supportedElementsAsVTKPolyhedra.vtk", 238, 119.491291493},
-      {"cells/polyhedron2pieces.vtu", 28, 8.0 / 3},  {"cells/CylinderQuadratic.vtk", 2904, 3.056082092e-05},
-      {"cells/uGridEx.vtk", 28, 7.0 / 3},            {"cells/AngularSector.vtk", 8880, 4.883771487e-4},
+      {"cells/polyhedron2pieces.vtu", 28, 8.0 / 3},
+      {"cells/CylinderQuadratic.vtk", 2904, 3.056082092e-05},
+      {"cells/uGridEx.vtk", 28, 7.0 / 3},
+      {"cells/AngularSector.vtk", 8880, 4.883771487e-4},
       {"volumes/bluntfin_hex.vtu", 13516, 931.1626964},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
@@ -468,7 +479,8 @@ static void test_conforming(void **state) {
     assert_int_equal(tetcast_mesh_health(fixture->context, mesh, &health), TETCAST_OK);
     assert_int_equal(health.boundary_faces, cases[i].boundary_faces);
     assert_int_equal(health.nonmanifold_faces, 0);
-    if (cases[i].volume > 0) assert_true(fabs(health.volume / cases[i].volume - 1) < 1e-6);
+    if (cases[i].volume > 0)
+      assert_true(fabs(health.volume / cases[i].volume - 1) < 1e-6);
     tetcast_mesh_destroy(&mesh);
     tetcast_dataset_destroy(&dataset);
   }
@@ -478,22 +490,30 @@ static void test_conforming(void **state) {
  * kind of array has values there. */
 static void test_added_vertices(void **state) {
   Fixture *fixture = *state;
-  static const double at[20][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2}, {0, 2, 2}, {1, 0, 0}, {2, 1, 0},
-                                   {1, 2, 0}, {0, 1, 0}, {1, 0, 2}, {2, 1, 2}, {1, 2, 2}, {0, 1, 2}, {0, 0, 1}, {2, 0, 1}, {2, 2, 1}, {0, 2, 1}};
+  static const double at[20][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2},
+                                   {0, 2, 2}, {1, 0, 0}, {2, 1, 0}, {1, 2, 0}, {0, 1, 0}, {1, 0, 2}, {2, 1, 2},
+                                   {1, 2, 2}, {0, 1, 2}, {0, 0, 1}, {2, 0, 1}, {2, 2, 1}, {0, 2, 1}};
   char text[8192], part[256];
-  int length = snprintf(text, sizeof text, "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 20 float\n");
-  for (int i = 0; i < 20; ++i) length += snprintf(text + length, sizeof text - (size_t)length, "%g %g %g\n", at[i][0], at[i][1], at[i][2]);
+  int length =
+      snprintf(text, sizeof text, "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 20 float\n");
+  for (int i = 0; i < 20; ++i)
+    length += snprintf(text + length, sizeof text - (size_t)length, "%g %g %g\n", at[i][0], at[i][1], at[i][2]);
   length += snprintf(text + length, sizeof text - (size_t)length, "CELLS 1 21\n20");
-  for (int i = 0; i < 20; ++i) length += snprintf(text + length, sizeof text - (size_t)length, " %d", i);
-  length += snprintf(text + length, sizeof text - (size_t)length,
-                     "\nCELL_TYPES 1\n25\nCELL_DATA 1\nSCALARS c int\nLOOKUP_TABLE default\n7\nPOINT_DATA 20\nFIELD F 4\n");
-  static const char *const arrays[] = {"real 1 20 float", "whole 1 20 int", "tiny 1 20 unsigned_char", "pair 2 20 double"};
+  for (int i = 0; i < 20; ++i)
+    length += snprintf(text + length, sizeof text - (size_t)length, " %d", i);
+  length +=
+      snprintf(text + length, sizeof text - (size_t)length,
+               "\nCELL_TYPES 1\n25\nCELL_DATA 1\nSCALARS c int\nLOOKUP_TABLE default\n7\nPOINT_DATA 20\nFIELD F 4\n");
+  static const char *const arrays[] = {"real 1 20 float", "whole 1 20 int", "tiny 1 20 unsigned_char",
+                                       "pair 2 20 double"};
   for (int a = 0; a < 4; ++a) {
     length += snprintf(text + length, sizeof text - (size_t)length, "%s\n", arrays[a]);
     for (int i = 0; i < 20; ++i) { /* x² + 2 y z, a function that the cell has exactly */
       const double value = at[i][0] * at[i][0] + 2 * at[i][1] * at[i][2];
-      if (a == 3) snprintf(part, sizeof part, "%g %g ", 3 * value, 4 * value);
-      else snprintf(part, sizeof part, "%g ", value);
+      if (a == 3)
+        snprintf(part, sizeof part, "%g %g ", 3 * value, 4 * value);
+      else
+        snprintf(part, sizeof part, "%g ", value);
       length += snprintf(text + length, sizeof text - (size_t)length, "%s", part);
     }
   }
@@ -535,9 +555,11 @@ static void *read_many(void *shared) {
   for (int i = 0; i < 50; ++i) {
     TetcastDataset *dataset;
     fixture.errors = 0;
-    if (tetcast_dataset_read(fixture.context, good, NULL, &dataset) != TETCAST_OK || fixture.errors != 0) return "good";
+    if (tetcast_dataset_read(fixture.context, good, NULL, &dataset) != TETCAST_OK || fixture.errors != 0)
+      return "good";
     tetcast_dataset_destroy(&dataset);
-    if (tetcast_dataset_read(fixture.context, bad, NULL, &dataset) != TETCAST_ERROR_DATA || fixture.errors != 1) return "bad";
+    if (tetcast_dataset_read(fixture.context, bad, NULL, &dataset) != TETCAST_ERROR_DATA || fixture.errors != 1)
+      return "bad";
   }
   tetcast_context_destroy(&fixture.context);
   return NULL;
@@ -549,7 +571,8 @@ static void test_threads(void **state) {
   text_file(fixture, "bad.vtu",
             xml("<PointData><DataArray type='Int64' Name='short' format='ascii'>1</DataArray></PointData>"));
   pthread_t threads[4];
-  for (int i = 0; i < 4; ++i) assert_int_equal(pthread_create(&threads[i], NULL, read_many, fixture), 0);
+  for (int i = 0; i < 4; ++i)
+    assert_int_equal(pthread_create(&threads[i], NULL, read_many, fixture), 0);
   for (int i = 0; i < 4; ++i) {
     void *failure;
     pthread_join(threads[i], &failure);

@@ -27,7 +27,8 @@ static void test_same_as_vtu(void **state) {
     tetcast_dataset_destroy(&dataset);
   }
   assert_int_equal(faces[0], faces[1]);
-  for (int k = 0; k < 2; ++k) assert_true(fabs(range[0][k] - range[1][k]) < 1e-4);
+  for (int k = 0; k < 2; ++k)
+    assert_true(fabs(range[0][k] - range[1][k]) < 1e-4);
 }
 
 /* Blocks that share points become one mesh, with the arrays over all of them. */
@@ -45,7 +46,8 @@ static void test_blocks(void **state) {
 static TetcastStatus attempt(Fixture *fixture, const void *bytes, size_t size) {
   TetcastDataset *dataset;
   fixture->errors = 0;
-  const TetcastStatus status = tetcast_dataset_read(fixture->context, file_of(fixture, "bad.ex2", bytes, size), NULL, &dataset);
+  const TetcastStatus status =
+      tetcast_dataset_read(fixture->context, file_of(fixture, "bad.ex2", bytes, size), NULL, &dataset);
   assert_int_equal(fixture->errors, status != TETCAST_OK); /* one line, of one line: see remember() */
   tetcast_dataset_destroy(&dataset);
   return status;
@@ -56,7 +58,8 @@ static void test_truncation(void **state) {
   Fixture *fixture = *state;
   size_t size;
   char *bytes = contents(data_path(fixture, "volumes/disk_out_ref.ex2"), &size);
-  for (size_t part = 0; part < 40; ++part) assert_int_not_equal(attempt(fixture, bytes, size * part / 40), TETCAST_OK);
+  for (size_t part = 0; part < 40; ++part)
+    assert_int_not_equal(attempt(fixture, bytes, size * part / 40), TETCAST_OK);
   assert_int_not_equal(attempt(fixture, bytes, size - 8), TETCAST_OK);
   assert_int_equal(attempt(fixture, bytes, size), TETCAST_OK);
   free(bytes);

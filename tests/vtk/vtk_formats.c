@@ -8,7 +8,8 @@ static void test_structured(void **state) {
   static const char *const names[] = {"i.vti", "r.vtr", "s.vts", "i.vtk", "r.vtk", "s.vtk"};
   for (int i = 0; i < 6; ++i) {
     for (int mode = SAMPLE_ASCII; mode <= SAMPLE_RAW; ++mode) {
-      if (i >= 3 && mode > SAMPLE_BINARY) break;
+      if (i >= 3 && mode > SAMPLE_BINARY)
+        break;
       const char *path = in_folder(fixture, names[i]);
       sample_structured(path, names[i][0], (SampleMode)mode);
       TetcastDataset *dataset = read_good(fixture, path);
@@ -24,7 +25,10 @@ static void test_structured(void **state) {
       tetcast_dataset_destroy(&dataset);
     }
   }
-  read_bad(fixture, text_file(fixture, "flat.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4 4 1\nORIGIN 0 0 0\nSPACING 1 1 1\n"),
+  read_bad(fixture,
+           text_file(fixture, "flat.vtk",
+                     "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4 4 1\nORIGIN 0 0 "
+                     "0\nSPACING 1 1 1\n"),
            TETCAST_ERROR_DATA, "no volume");
 }
 
@@ -82,22 +86,26 @@ static void test_blocks(void **state) {
     tetcast_dataset_destroy(&dataset);
   }
   static const char *const wrong[] = {"low", "ody/low", "body/", "", "1"};
-  for (size_t i = 0; i < 5; ++i) refuse_with(fixture, path, of_block(wrong[i]), "there are: body/lower, body/upper");
+  for (size_t i = 0; i < 5; ++i)
+    refuse_with(fixture, path, of_block(wrong[i]), "there are: body/lower, body/upper");
   sample_layers(in_folder(fixture, "one.vtu"), 0, 4, GHOST_NONE);
   refuse_with(fixture, fixture->path, of_block("body"), "it is not of blocks");
   /* What is not asked for is not read: a file cut short does not matter, unless it may hold blocks of its own. */
   sample_layers(in_folder(fixture, "good.vtu"), 0, 4, GHOST_NONE);
   text_file(fixture, "cut.vtu", "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOf");
   text_file(fixture, "cut.vtm", "<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet><Blo");
-  static const char list[] = "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet><DataSet name=\"a\" file=\"good.vtu\"/>"
+  static const char list[] = "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet><DataSet "
+                             "name=\"a\" file=\"good.vtu\"/>"
                              "<DataSet name=\"b\" file=\"cut.%s\"/></vtkMultiBlockDataSet></VTKFile>";
   for (int i = 0; i < 2; ++i) {
     char text[512];
     snprintf(text, sizeof text, list, i ? "vtm" : "vtu");
     path = text_file(fixture, "two.vtm", text);
     const TetcastDatasetDesc desc = of_block("a");
-    assert_int_equal(tetcast_dataset_read(fixture->context, path, &desc, &dataset), i ? TETCAST_ERROR_DATA : TETCAST_OK);
-    if (i == 0) assert_string_equal(tetcast_dataset_block(dataset, 1), "b");
+    assert_int_equal(tetcast_dataset_read(fixture->context, path, &desc, &dataset),
+                     i ? TETCAST_ERROR_DATA : TETCAST_OK);
+    if (i == 0)
+      assert_string_equal(tetcast_dataset_block(dataset, 1), "b");
     tetcast_dataset_destroy(&dataset);
     read_bad(fixture, path, TETCAST_ERROR_DATA, "truncated");
   }
@@ -106,7 +114,9 @@ static void test_blocks(void **state) {
   assert_int_equal(system(folder), 0);
 }
 
-#define PVD(entries) "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\"><Collection>" entries "</Collection></VTKFile>\n"
+#define PVD(entries)                                                                                                   \
+  "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\"><Collection>" entries                         \
+  "</Collection></VTKFile>\n"
 #define ENTRY(time, file) "<DataSet timestep=\"" time "\" part=\"0\" file=\"" file "\"/>"
 
 static void assert_step(Fixture *fixture, const char *path, TetcastDatasetDesc desc, int64_t step, int first, int end) {
@@ -129,11 +139,13 @@ static void test_series(void **state) {
   char paths[2][512];
   snprintf(paths[0], 512, "%s",
            text_file(fixture, "a.pvd", PVD(ENTRY("7", "high.vtu") ENTRY("0.5", "low.vtu") ENTRY("0.1", "all.vtu"))));
-  snprintf(paths[1], 512, "%s",
-           text_file(fixture, "a.vtu.series",
-                     "{\n  \"file-series-version\" : \"1.0\", \"more\": [{\"x\": [1, -2e3, true, null, \"\\u00e4\\n\"]}, {}],\n"
-                     "  \"files\" : [ { \"time\": 7, \"name\" : \"high.vtu\" }, { \"name\" : \"l\\u006fw.vtu\", \"time\" : 5e-1 },"
-                     " { \"name\" : \"all.vtu\", \"time\" : 0.1 } ]\n}\n"));
+  snprintf(
+      paths[1], 512, "%s",
+      text_file(
+          fixture, "a.vtu.series",
+          "{\n  \"file-series-version\" : \"1.0\", \"more\": [{\"x\": [1, -2e3, true, null, \"\\u00e4\\n\"]}, {}],\n"
+          "  \"files\" : [ { \"time\": 7, \"name\" : \"high.vtu\" }, { \"name\" : \"l\\u006fw.vtu\", \"time\" : 5e-1 },"
+          " { \"name\" : \"all.vtu\", \"time\" : 0.1 } ]\n}\n"));
   for (int i = 0; i < 2; ++i) {
     assert_step(fixture, paths[i], tetcast_dataset_desc_default(), 0, 0, 4);
     assert_step(fixture, paths[i], of_step(1), 1, 0, 2);
@@ -149,8 +161,9 @@ static void test_series(void **state) {
   refuse_with(fixture, in_folder(fixture, "all.vtu"), of_time(0), "one step");
   /* Parts of one time, and no times at all, with which all are parts. */
   for (int i = 0; i < 2; ++i) {
-    const char *path = text_file(fixture, "b.pvd", i ? PVD(ENTRY("2", "low.vtu") ENTRY("2", "high.vtu") ENTRY("3", "low.vtu"))
-                                                     : PVD("<DataSet file=\"low.vtu\"/><DataSet file=\"high.vtu\"/>"));
+    const char *path = text_file(fixture, "b.pvd",
+                                 i ? PVD(ENTRY("2", "low.vtu") ENTRY("2", "high.vtu") ENTRY("3", "low.vtu"))
+                                   : PVD("<DataSet file=\"low.vtu\"/><DataSet file=\"high.vtu\"/>"));
     TetcastDataset *dataset = read_with(fixture, path, tetcast_dataset_desc_default());
     assert_layers(fixture, dataset, 0, 4, 1, true);
     assert_true(tetcast_dataset_time(dataset, 0, NULL) == (i == 1));
@@ -193,7 +206,8 @@ static void test_series(void **state) {
 static void test_exodus_steps(void **state) {
   Fixture *fixture = *state;
   const char *path = in_folder(fixture, "box.ex2");
-  if (!sample_exodus(path)) skip();
+  if (!sample_exodus(path))
+    skip();
   for (int step = 0; step < 2; ++step) {
     TetcastDataset *dataset = read_with(fixture, path, step ? of_time(2) : tetcast_dataset_desc_default());
     assert_int_equal(tetcast_dataset_step(dataset), step);
@@ -209,7 +223,8 @@ static void test_exodus_steps(void **state) {
 static bool can_read(const char *extensions) {
   const char *found;
   for (int i = 0; tetcast_dataset_format(i, NULL, &found); ++i) {
-    if (strcmp(found, extensions) == 0) return true;
+    if (strcmp(found, extensions) == 0)
+      return true;
   }
   print_message("skipped: built without %s\n", extensions);
   return false;
@@ -218,7 +233,8 @@ static bool can_read(const char *extensions) {
 static void test_cgns(void **state) {
   Fixture *fixture = *state;
   const char *path = in_folder(fixture, "box.cgns");
-  if (!can_read(".cgns") || !sample_cgns(path)) skip();
+  if (!can_read(".cgns") || !sample_cgns(path))
+    skip();
   TetcastDataset *dataset = read_with(fixture, path, tetcast_dataset_desc_default());
   assert_layers(fixture, dataset, 0, 4, 1, false);
   assert_int_equal(tetcast_dataset_pieces(dataset).pieces, 2);
@@ -230,7 +246,8 @@ static void test_cgns(void **state) {
 
 static void test_vtkhdf(void **state) {
   Fixture *fixture = *state;
-  if (!can_read(".vtkhdf .hdf")) skip();
+  if (!can_read(".vtkhdf .hdf"))
+    skip();
   TetcastDataset *dataset[2] = {read_good(fixture, data_path(fixture, "cells/can-vtu.hdf")), NULL};
   dataset[1] = read_good(fixture, data_path(fixture, "volumes/can.vtu"));
   TetcastMesh *mesh[2];
@@ -250,8 +267,9 @@ static void test_vtkhdf(void **state) {
 static void test_tetgen(void **state) {
   Fixture *fixture = *state;
   for (int base = 0; base < 2; ++base) {
-    text_file(fixture, "t.node", base ? "# comment\n4 3 1 1\n1 0 0 0 5 0\n2 1 0 0 6 0\n\n3 0 1 0 7 1\n4 0 0 1 8 1 # here too\n"
-                                      : "4 3 1 1\n0 0 0 0 5 0\n1 1 0 0 6 0\n2 0 1 0 7 1\n3 0 0 1 8 1\n");
+    text_file(fixture, "t.node",
+              base ? "# comment\n4 3 1 1\n1 0 0 0 5 0\n2 1 0 0 6 0\n\n3 0 1 0 7 1\n4 0 0 1 8 1 # here too\n"
+                   : "4 3 1 1\n0 0 0 0 5 0\n1 1 0 0 6 0\n2 0 1 0 7 1\n3 0 0 1 8 1\n");
     text_file(fixture, "t.ele", base ? "1 4 1\n1 1 2 3 4 9\n" : "1 4 1\n0 0 1 2 3 9\n");
     for (int i = 0; i < 2; ++i) {
       TetcastDataset *dataset = read_good(fixture, in_folder(fixture, i ? "t.ele" : "t.node"));
@@ -285,7 +303,8 @@ static void test_tetgen(void **state) {
 
 static void test_ensight(void **state) {
   Fixture *fixture = *state;
-  if (!can_read(".case .encas")) skip();
+  if (!can_read(".case .encas"))
+    skip();
   const char *path = write_ensight(fixture);
   for (int step = 0; step < 2; ++step) {
     TetcastDataset *dataset = read_with(fixture, path, of_step(step));
@@ -306,7 +325,8 @@ static void test_ensight(void **state) {
 
 static void test_openfoam(void **state) {
   Fixture *fixture = *state;
-  if (!can_read(".foam")) skip();
+  if (!can_read(".foam"))
+    skip();
   const char *path = write_openfoam(fixture);
   for (int step = 0; step < 2; ++step) {
     TetcastDataset *dataset = read_with(fixture, path, of_step(step));
@@ -334,8 +354,8 @@ static void test_openfoam(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {TEST(test_structured), TEST(test_formats), TEST(test_blocks),  TEST(test_series),
-                                     TEST(test_exodus_steps), TEST(test_cgns),  TEST(test_vtkhdf),  TEST(test_tetgen),
-                                     TEST(test_ensight),    TEST(test_openfoam)};
+  const struct CMUnitTest tests[] = {TEST(test_structured),   TEST(test_formats), TEST(test_blocks), TEST(test_series),
+                                     TEST(test_exodus_steps), TEST(test_cgns),    TEST(test_vtkhdf), TEST(test_tetgen),
+                                     TEST(test_ensight),      TEST(test_openfoam)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

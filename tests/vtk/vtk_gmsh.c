@@ -1,30 +1,44 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Gmsh's files: every version and encoding gives the same mesh and arrays; nodes of second order; what is damaged is told where. */
+/* Gmsh's files: every version and encoding gives the same mesh and arrays; nodes of second order; what is damaged is
+ * told where. */
 #include "box.h"
 #include "gmsh_file.h"
 
 /* A hexahedron with a wedge beside, a pyramid above, and a tetrahedron on that. */
 enum { NODES = 12, CELLS = 4, LISTED = 7 };
-static const double points[NODES][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1},      {1, 0, 1},
+static const double points[NODES][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1},     {1, 0, 1},
                                         {1, 1, 1}, {0, 1, 1}, {2, 0, 0}, {2, 0, 1}, {0.5, 0.5, 2}, {1.5, 0.5, 1.5}};
 static const double volume = 1 + 0.5 + 1.0 / 3 + 0.125;
 
-static int64_t tag_of(int64_t i, bool sparse) { return sparse ? 1000 - 7 * i : i + 1; }
+static int64_t tag_of(int64_t i, bool sparse) {
+  return sparse ? 1000 - 7 * i : i + 1;
+}
 
 static const int group_of[2] = {3, 0};
 
 /* A triangle first; the wedge is in two groups, so version 2 lists it twice. */
 static void write_mesh(GmshFile *to, bool sparse, int parameters) {
-  static const int64_t at[LISTED][8] = {{0, 1, 4}, {0, 1, 2, 3, 4, 5, 6, 7}, {1, 8, 2, 5, 9, 6}, {1, 8, 2, 5, 9, 6}, {4, 5, 6, 7, 10}, {5, 6, 10, 11}, {1, 2, 3}};
-  static const int sizes[LISTED] = {3, 8, 6, 6, 5, 4, 3}, types[LISTED] = {2, 5, 6, 6, 7, 4, 2}, volumes[LISTED] = {1, 1, 1, 1, 2, 2, 1};
+  static const int64_t at[LISTED][8] = {{0, 1, 4},          {0, 1, 2, 3, 4, 5, 6, 7}, {1, 8, 2, 5, 9, 6},
+                                        {1, 8, 2, 5, 9, 6}, {4, 5, 6, 7, 10},         {5, 6, 10, 11},
+                                        {1, 2, 3}};
+  static const int sizes[LISTED] = {3, 8, 6, 6, 5, 4, 3}, types[LISTED] = {2, 5, 6, 6, 7, 4, 2},
+                   volumes[LISTED] = {1, 1, 1, 1, 2, 2, 1};
   int64_t tags[NODES], node[LISTED][8];
   GmshElement elements[LISTED];
   int64_t count = 0;
-  for (int64_t i = 0; i < NODES; ++i) tags[i] = tag_of(i, sparse);
+  for (int64_t i = 0; i < NODES; ++i)
+    tags[i] = tag_of(i, sparse);
   for (int i = 0; i < LISTED; ++i) {
-    if (i == 3 && to->version == 4) continue;
-    for (int k = 0; k < sizes[i]; ++k) node[i][k] = tag_of(at[i][k], sparse);
-    elements[count++] = (GmshElement){tag_of(i, sparse), types[i], sizes[i], volumes[i], i == 3 ? 99 : types[i] == 2 ? 0 : group_of[volumes[i] - 1], node[i]};
+    if (i == 3 && to->version == 4)
+      continue;
+    for (int k = 0; k < sizes[i]; ++k)
+      node[i][k] = tag_of(at[i][k], sparse);
+    elements[count++] = (GmshElement){tag_of(i, sparse),
+                                      types[i],
+                                      sizes[i],
+                                      volumes[i],
+                                      i == 3 ? 99 : types[i] == 2 ? 0 : group_of[volumes[i] - 1],
+                                      node[i]};
   }
   gmsh_text(to, "$PhysicalNames\n1\n3 3 \"air $End of it\"\n$EndPhysicalNames\n");
   gmsh_entities(to, 2, group_of);
@@ -39,11 +53,14 @@ static void write_views(GmshFile *to, bool sparse) {
   for (int64_t i = 0; i < NODES; ++i) {
     tags[i] = tag_of(i, sparse);
     s[i] = points[i][0] + 2 * points[i][1] + 4 * points[i][2];
-    for (int k = 0; k < 3; ++k) v[i][k] = points[i][k];
+    for (int k = 0; k < 3; ++k)
+      v[i][k] = points[i][k];
   }
-  for (int i = 0; i < CELLS; ++i) cells[i] = tag_of(place[i], sparse), c[i] = 10 + i;
+  for (int i = 0; i < CELLS; ++i)
+    cells[i] = tag_of(place[i], sparse), c[i] = 10 + i;
   gmsh_data(to, "NodeData", "s", 0, 1, NODES, tags, 0, s);
-  for (int i = 0; i < NODES; ++i) s[i] *= 2;
+  for (int i = 0; i < NODES; ++i)
+    s[i] *= 2;
   gmsh_data(to, "NodeData", "s", 1.5, 1, NODES, tags, 0, s);
   gmsh_data(to, "NodeData", "v", 0, 3, NODES - 1, tags + 1, 0, v[1]);
   gmsh_data(to, "ElementData", "c", 0, 1, CELLS, cells, 0, c);
@@ -71,7 +88,8 @@ static void check(Fixture *fixture, const TetcastDataset *dataset, double scale)
   for (int i = 0; i < NODES; ++i) {
     double p[3];
     tetcast_mesh_vertex(mesh, i, p);
-    for (int k = 0; k < 3; ++k) assert_true(p[k] == points[i][k]);
+    for (int k = 0; k < 3; ++k)
+      assert_true(p[k] == points[i][k]);
     assert_true(value(dataset, "s", i) == scale * (p[0] + 2 * p[1] + 4 * p[2]));
     assert_true(i == 0 ? isnan(value(dataset, "v:1", i)) : value(dataset, "v:1", i) == p[1]);
   }
@@ -80,13 +98,15 @@ static void check(Fixture *fixture, const TetcastDataset *dataset, double scale)
     int64_t v[4];
     tetcast_mesh_tetrahedron(mesh, i, v);
     double x = 0, z = 0;
-    for (int k = 0; k < 4; ++k) x += points[v[k]][0] / 4, z += points[v[k]][2] / 4;
+    for (int k = 0; k < 4; ++k)
+      x += points[v[k]][0] / 4, z += points[v[k]][2] / 4;
     const int cell = i == count - 1 ? 3 : z > 1 ? 2 : x > 1 ? 1 : 0;
     assert_true(value(dataset, "c", i) == 10 + cell);
     assert_true(value(dataset, "physical", i) == (cell < 2 ? 3 : 0));
   }
   assert_true(value(dataset, "hex", 6) == 7 && isnan(value(dataset, "hex", 8)));
-  assert_true(value(dataset, "wedge", 2) == 30 && value(dataset, "wedge", 9) == 50 && isnan(value(dataset, "wedge", 0)));
+  assert_true(value(dataset, "wedge", 2) == 30 && value(dataset, "wedge", 9) == 50 &&
+              isnan(value(dataset, "wedge", 0)));
   tetcast_mesh_destroy(&mesh);
 }
 
@@ -140,20 +160,69 @@ static const struct {
   int edge[12][2], face[6][4];
   double p[8][3], volume;
 } second_order[] = {
-  {11, 4, 6, 0, false, {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}}, {{0}}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 1.0 / 6},
-  {17, 8, 12, 0, false, {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 5}, {2, 3}, {2, 6}, {3, 7}, {4, 5}, {4, 7}, {5, 6}, {6, 7}}, {{0}},
-   {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, 1},
-  {12, 8, 12, 6, true, {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 5}, {2, 3}, {2, 6}, {3, 7}, {4, 5}, {4, 7}, {5, 6}, {6, 7}},
-   {{0, 3, 2, 1}, {0, 1, 5, 4}, {0, 4, 7, 3}, {1, 2, 6, 5}, {2, 3, 7, 6}, {4, 5, 6, 7}},
-   {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, 1},
-  {18, 6, 9, 0, false, {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 4}, {2, 5}, {3, 4}, {3, 5}, {4, 5}}, {{0}},
-   {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, 0.5},
-  {13, 6, 9, 3, false, {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 4}, {2, 5}, {3, 4}, {3, 5}, {4, 5}}, {{0, 1, 4, 3}, {0, 3, 5, 2}, {1, 2, 5, 4}},
-   {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, 0.5},
-  {19, 5, 8, 0, false, {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}}, {{0}},
-   {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 1}}, 1.0 / 3},
-  {14, 5, 8, 1, false, {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}}, {{0, 3, 2, 1}},
-   {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 1}}, 1.0 / 3},
+    {11,
+     4,
+     6,
+     0,
+     false,
+     {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}},
+     {{0}},
+     {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+     1.0 / 6},
+    {17,
+     8,
+     12,
+     0,
+     false,
+     {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 5}, {2, 3}, {2, 6}, {3, 7}, {4, 5}, {4, 7}, {5, 6}, {6, 7}},
+     {{0}},
+     {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
+     1},
+    {12,
+     8,
+     12,
+     6,
+     true,
+     {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 5}, {2, 3}, {2, 6}, {3, 7}, {4, 5}, {4, 7}, {5, 6}, {6, 7}},
+     {{0, 3, 2, 1}, {0, 1, 5, 4}, {0, 4, 7, 3}, {1, 2, 6, 5}, {2, 3, 7, 6}, {4, 5, 6, 7}},
+     {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
+     1},
+    {18,
+     6,
+     9,
+     0,
+     false,
+     {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 4}, {2, 5}, {3, 4}, {3, 5}, {4, 5}},
+     {{0}},
+     {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}},
+     0.5},
+    {13,
+     6,
+     9,
+     3,
+     false,
+     {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 4}, {2, 5}, {3, 4}, {3, 5}, {4, 5}},
+     {{0, 1, 4, 3}, {0, 3, 5, 2}, {1, 2, 5, 4}},
+     {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}},
+     0.5},
+    {19,
+     5,
+     8,
+     0,
+     false,
+     {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}},
+     {{0}},
+     {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 1}},
+     1.0 / 3},
+    {14,
+     5,
+     8,
+     1,
+     false,
+     {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}},
+     {{0, 3, 2, 1}},
+     {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 1}},
+     1.0 / 3},
 };
 
 static void test_second_order(void **state) {
@@ -161,18 +230,23 @@ static void test_second_order(void **state) {
   for (size_t i = 0; i < sizeof second_order / sizeof *second_order; ++i) {
     double p[27][3];
     int64_t tags[27], count = 0;
-    for (; count < second_order[i].corners; ++count) memcpy(p[count], second_order[i].p[count], sizeof p[0]);
+    for (; count < second_order[i].corners; ++count)
+      memcpy(p[count], second_order[i].p[count], sizeof p[0]);
     for (int e = 0; e < second_order[i].edges; ++e, ++count) {
       const int *end = second_order[i].edge[e];
-      for (int k = 0; k < 3; ++k) p[count][k] = (p[end[0]][k] + p[end[1]][k]) / 2;
+      for (int k = 0; k < 3; ++k)
+        p[count][k] = (p[end[0]][k] + p[end[1]][k]) / 2;
     }
     for (int f = 0; f < second_order[i].faces; ++f, ++count) {
       const int *corner = second_order[i].face[f];
-      for (int k = 0; k < 3; ++k) p[count][k] = (p[corner[0]][k] + p[corner[1]][k] + p[corner[2]][k] + p[corner[3]][k]) / 4;
+      for (int k = 0; k < 3; ++k)
+        p[count][k] = (p[corner[0]][k] + p[corner[1]][k] + p[corner[2]][k] + p[corner[3]][k]) / 4;
     }
-    for (int k = 0; second_order[i].centre && k < 3; ++k) p[26][k] = 0.5;
+    for (int k = 0; second_order[i].centre && k < 3; ++k)
+      p[26][k] = 0.5;
     count += second_order[i].centre;
-    for (int64_t k = 0; k < count; ++k) tags[k] = k + 1;
+    for (int64_t k = 0; k < count; ++k)
+      tags[k] = k + 1;
     const GmshElement element = {1, second_order[i].type, (int)count, 1, 0, tags};
     for (int version = 2; version <= 4; version += 2) {
       GmshFile to = gmsh_open(in_folder(fixture, "b.msh"), version, GMSH_LITTLE);
@@ -185,9 +259,10 @@ static void test_second_order(void **state) {
       assert_int_equal(tetcast_dataset_mesh(dataset, &mesh), TETCAST_OK);
       assert_int_equal(tetcast_mesh_health(fixture->context, mesh, &health), TETCAST_OK);
       const TetcastCutInfo info = tetcast_dataset_cut(dataset);
-      if (fabs(health.volume / second_order[i].volume - 1) > 1e-12 || health.inverted_cells || health.degenerate_cells || health.unused_vertices ||
-          info.folded || info.segments[0] != 2) {
-        print_error("type %d: volume %g, %d inverted\n", second_order[i].type, health.volume, (int)health.inverted_cells);
+      if (fabs(health.volume / second_order[i].volume - 1) > 1e-12 || health.inverted_cells ||
+          health.degenerate_cells || health.unused_vertices || info.folded || info.segments[0] != 2) {
+        print_error("type %d: volume %g, %d inverted\n", second_order[i].type, health.volume,
+                    (int)health.inverted_cells);
         fail();
       }
       tetcast_mesh_destroy(&mesh);
@@ -243,10 +318,12 @@ static void test_errors(void **state) {
       {HEAD FOUR ONE "nonsense\n", TETCAST_ERROR_DATA, "a section is to begin here"},
       {"$MeshFormat\n2.2 1 8\nabcd\n$EndMeshFormat\n", TETCAST_ERROR_DATA, "byte 24: the number 1 is to come"},
   };
-  for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) read_bad(fixture, text_file(fixture, "c.msh", cases[i].text), cases[i].status, cases[i].words);
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i)
+    read_bad(fixture, text_file(fixture, "c.msh", cases[i].text), cases[i].status, cases[i].words);
   read_bad(fixture, text_file(fixture, "d.msh", "(0 \"of another program\")\n"), TETCAST_ERROR_DATA,
            "is not a Gmsh file");
-  TetcastDataset *dataset = read_good(fixture, text_file(fixture, "noname", "$Comments\nany\n$EndComments\n" HEAD FOUR ONE));
+  TetcastDataset *dataset =
+      read_good(fixture, text_file(fixture, "noname", "$Comments\nany\n$EndComments\n" HEAD FOUR ONE));
   assert_true(value(dataset, NULL, 0) == 7); /* the group */
   tetcast_dataset_destroy(&dataset);
 }
@@ -387,10 +464,12 @@ static void test_third_order(void **state) {
 static void test_partitions(void **state) {
   Fixture *fixture = *state;
   static const char text[] =
-    "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 1\n1 0 0 0 1 1 1 1 5 0\n$EndEntities\n"
-    "$PartitionedEntities\n2\n1\n9 2\n1 0 0 2\n7 0 3 1 1 0 0 0 0\n2 3 1 1 1 0 0 0 1 1 1 1 5 1 7\n3 3 1 2 1 2 0 0 0 1 1 1 2 6 5 0\n$EndPartitionedEntities\n"
-    "$Nodes\n1 5 1 5\n3 2 0 5\n1\n2\n3\n4\n5\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n$EndNodes\n"
-    "$Elements\n2 2 1 2\n3 2 4 1\n1 1 2 3 4\n3 3 4 1\n2 2 3 4 5\n$EndElements\n$GhostElements\n1\n2 2 1 1\n$EndGhostElements\n";
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 1\n1 0 0 0 1 1 1 1 5 0\n$EndEntities\n"
+      "$PartitionedEntities\n2\n1\n9 2\n1 0 0 2\n7 0 3 1 1 0 0 0 0\n2 3 1 1 1 0 0 0 1 1 1 1 5 1 7\n3 3 1 2 1 2 0 0 0 1 "
+      "1 1 2 6 5 0\n$EndPartitionedEntities\n"
+      "$Nodes\n1 5 1 5\n3 2 0 5\n1\n2\n3\n4\n5\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n$EndNodes\n"
+      "$Elements\n2 2 1 2\n3 2 4 1\n1 1 2 3 4\n3 3 4 1\n2 2 3 4 5\n$EndElements\n$GhostElements\n1\n2 2 1 "
+      "1\n$EndGhostElements\n";
   TetcastDataset *dataset = read_good(fixture, text_file(fixture, "p.msh", text));
   assert_true(value(dataset, "physical", 0) == 5 && value(dataset, "physical", 1) == 6);
   tetcast_dataset_destroy(&dataset);

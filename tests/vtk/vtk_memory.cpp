@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading a file takes no more memory than its arrays and what is kept of them, and keeps nothing twice. Each file is read by a process of
-// its own, whose peak the kernel knows.
+// Reading a file takes no more memory than its arrays and what is kept of them, and keeps nothing twice. Each file is
+// read by a process of its own, whose peak the kernel knows.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -46,24 +46,28 @@ vtkSmartPointer<vtkUnstructuredGrid> grid_of(int n, bool tetrahedra) {
   s->SetName("s");
   c->SetName("c");
   for (vtkIdType i = 0; i < m * m * m; ++i) {
-    points->InsertNextPoint(static_cast<double>(i % m), static_cast<double>(i / m % m), static_cast<double>(i / (m * m)));
+    points->InsertNextPoint(static_cast<double>(i % m), static_cast<double>(i / m % m),
+                            static_cast<double>(i / (m * m)));
     s->InsertNextValue(static_cast<double>(i));
   }
   vtkNew<vtkCellArray> cells;
   for (vtkIdType i = 0; i < vtkIdType{n} * n * n; ++i) {
     const vtkIdType a = i % n + i / n % n * m + i / (vtkIdType{n} * n) * m * m;
     if (!tetrahedra) {
-      const vtkIdType corners[8] = {a, a + 1, a + m + 1, a + m, a + m * m, a + m * m + 1, a + m * m + m + 1, a + m * m + m};
+      const vtkIdType corners[8] = {a,         a + 1,         a + m + 1,         a + m,
+                                    a + m * m, a + m * m + 1, a + m * m + m + 1, a + m * m + m};
       cells->InsertNextCell(8, corners);
     }
     static const int order[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
     for (int t = 0; tetrahedra && t < 6; ++t) {
       vtkIdType corners[4] = {a, 0, 0, 0};
-      for (int k = 0; k < 3; ++k) corners[k + 1] = corners[k] + step[order[t][k]];
+      for (int k = 0; k < 3; ++k)
+        corners[k + 1] = corners[k] + step[order[t][k]];
       cells->InsertNextCell(4, corners);
     }
   }
-  for (vtkIdType i = 0; i < cells->GetNumberOfCells(); ++i) c->InsertNextValue(static_cast<double>(i));
+  for (vtkIdType i = 0; i < cells->GetNumberOfCells(); ++i)
+    c->InsertNextValue(static_cast<double>(i));
   grid->SetPoints(points);
   grid->SetCells(tetrahedra ? VTK_TETRA : VTK_HEXAHEDRON, cells);
   grid->GetPointData()->AddArray(s);
@@ -77,7 +81,8 @@ void write_vtu(int n, bool tetrahedra, bool compressed, const std::string &path)
   writer->SetInputData(grid_of(n, tetrahedra));
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOff();
-  if (!compressed) writer->SetCompressorTypeToNone();
+  if (!compressed)
+    writer->SetCompressorTypeToNone();
   writer->Write();
 }
 
@@ -103,7 +108,8 @@ void write_gmsh(int n, const std::string &path) {
   for (vtkIdType i = 0; i < cells; ++i) {
     const auto at = static_cast<size_t>(i);
     grid->GetCellPoints(i, corners);
-    for (size_t k = 0; k < 4; ++k) nodes[4 * at + k] = corners->GetId(static_cast<vtkIdType>(k)) + 1;
+    for (size_t k = 0; k < 4; ++k)
+      nodes[4 * at + k] = corners->GetId(static_cast<vtkIdType>(k)) + 1;
     elements[at] = {i + 1, 4, 4, 1, 0, &nodes[4 * at]};
   }
   GmshFile to = gmsh_open(path.c_str(), 4, GMSH_LITTLE);
@@ -118,16 +124,19 @@ double status_of(const char *name) {
   char line[256];
   double bytes = 0;
   while (file && std::fgets(line, sizeof line, file)) {
-    if (std::strncmp(line, name, std::strlen(name)) == 0) bytes = std::atof(line + std::strlen(name)) * 1024;
+    if (std::strncmp(line, name, std::strlen(name)) == 0)
+      bytes = std::atof(line + std::strlen(name)) * 1024;
   }
-  if (file) std::fclose(file);
+  if (file)
+    std::fclose(file);
   return bytes;
 }
 
 // Runs in a process of its own; false: something is wrong there.
 template <typename T> bool apart(T *result, const std::function<bool(T *)> &work) {
   int ends[2];
-  if (pipe(ends) != 0) return false;
+  if (pipe(ends) != 0)
+    return false;
   const pid_t child = fork();
   if (child == 0) {
     T own = {};
@@ -147,14 +156,19 @@ bool measure(const std::string &small, const std::string &path, Peak *peak) {
   TetcastDataset *dataset = nullptr;
   TetcastMesh *mesh = nullptr;
   TetcastVolume *volume = nullptr;
-  if (tetcast_context_create(&desc, &context) != TETCAST_OK) return false;
-  if (tetcast_dataset_read(context, small.c_str(), nullptr, &dataset) != TETCAST_OK) return false; // loads all that there is to load
+  if (tetcast_context_create(&desc, &context) != TETCAST_OK)
+    return false;
+  if (tetcast_dataset_read(context, small.c_str(), nullptr, &dataset) != TETCAST_OK)
+    return false; // loads all that there is to load
   tetcast_dataset_destroy(&dataset);
   const double before = status_of("VmRSS:");
-  if (tetcast_dataset_read(context, path.c_str(), nullptr, &dataset) != TETCAST_OK) return false;
+  if (tetcast_dataset_read(context, path.c_str(), nullptr, &dataset) != TETCAST_OK)
+    return false;
   peak->read = status_of("VmHWM:") - before;
   peak->kept = status_of("VmRSS:") - before;
-  if (tetcast_dataset_mesh(dataset, &mesh) != TETCAST_OK || tetcast_volume_create(context, mesh, nullptr, &volume) != TETCAST_OK) return false;
+  if (tetcast_dataset_mesh(dataset, &mesh) != TETCAST_OK ||
+      tetcast_volume_create(context, mesh, nullptr, &volume) != TETCAST_OK)
+    return false;
   tetcast_mesh_destroy(&mesh);
   tetcast_dataset_destroy(&dataset);
   TetcastVolumeInfo info;
@@ -178,7 +192,8 @@ int main() {
   }
   const char *temporary = std::getenv("TMPDIR");
   std::string folder = std::string(temporary ? temporary : "/tmp") + "/tetcast-memory-XXXXXX";
-  if (!mkdtemp(&folder[0])) return 1;
+  if (!mkdtemp(&folder[0]))
+    return 1;
   const double cubes = N * N * N, points = (N + 1) * (N + 1) * (N + 1), tets = 6 * cubes;
   const double tet_arrays = 32 * points + tets * (32 + 8 + 1 + 8), cube_arrays = 32 * points + cubes * (64 + 8 + 1 + 8);
   const double tet_kept = 32 * points + tets * (32 + 8), cube_kept = 32 * points + cubes * 8 + tets * (16 + 4);
@@ -190,20 +205,29 @@ int main() {
       {"raw.vtu", [](int n, const std::string &path) { write_vtu(n, true, false, path); }, tet_arrays, tet_kept},
       {"compressed.vtu", [](int n, const std::string &path) { write_vtu(n, true, true, path); }, tet_arrays, tet_kept},
       {"legacy.vtk", [](int n, const std::string &path) { write_legacy(n, path); }, tet_arrays, tet_kept},
-      {"cubes.vtu", [](int n, const std::string &path) { write_vtu(n, false, false, path); }, cube_arrays + cube_kept, cube_kept},
-      {"mesh.msh", [](int n, const std::string &path) { write_gmsh(n, path); }, 40 * points + 56 * tets + tet_arrays, tet_kept},
+      {"cubes.vtu", [](int n, const std::string &path) { write_vtu(n, false, false, path); }, cube_arrays + cube_kept,
+       cube_kept},
+      {"mesh.msh", [](int n, const std::string &path) { write_gmsh(n, path); }, 40 * points + 56 * tets + tet_arrays,
+       tet_kept},
   };
   int failures = 0;
   for (const auto &one : cases) {
     const std::string small = folder + "/small-" + one.name, large = folder + "/" + one.name;
     bool done = false;
     Peak peak = {};
-    const bool good = apart<bool>(&done, [&](bool *) { one.write(3, small); one.write(N, large); return true; }) &&
+    const bool good = apart<bool>(&done,
+                                  [&](bool *) {
+                                    one.write(3, small);
+                                    one.write(N, large);
+                                    return true;
+                                  }) &&
                       apart<Peak>(&peak, [&](Peak *result) { return measure(small, large, result); });
     const double slack = 5 * megabyte; // of allocators
-    const bool right = good && peak.read <= 1.02 * one.read + slack && peak.kept <= 1.02 * one.kept + slack && peak.after <= slack + 5 * megabyte;
-    std::printf("%-15s read %6.1f of %6.1f MB, kept %6.1f of %6.1f, after %6.1f%s\n", one.name, peak.read / megabyte, one.read / megabyte,
-                peak.kept / megabyte, one.kept / megabyte, peak.after / megabyte, right ? "" : ": WRONG");
+    const bool right = good && peak.read <= 1.02 * one.read + slack && peak.kept <= 1.02 * one.kept + slack &&
+                       peak.after <= slack + 5 * megabyte;
+    std::printf("%-15s read %6.1f of %6.1f MB, kept %6.1f of %6.1f, after %6.1f%s\n", one.name, peak.read / megabyte,
+                one.read / megabyte, peak.kept / megabyte, one.kept / megabyte, peak.after / megabyte,
+                right ? "" : ": WRONG");
     failures += !right;
     unlink(small.c_str());
     unlink(large.c_str());

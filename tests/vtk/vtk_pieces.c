@@ -2,23 +2,25 @@
 /* What is in pieces is read as the whole: ghosts, blanked cells, and points that pieces share. */
 #include "box.h"
 
-#define PIECE(data, xyz)                                                                                                     \
-  "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\">" data                                                                    \
-  "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">" xyz "</DataArray></Points><Cells>"        \
-  "<DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray>"                                     \
-  "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">4</DataArray>"                                                \
+#define PIECE(data, xyz)                                                                                               \
+  "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\">" data                                                              \
+  "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">" xyz "</DataArray></Points><Cells>"  \
+  "<DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray>"                               \
+  "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">4</DataArray>"                                          \
   "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">10</DataArray></Cells></Piece>"
-#define VTU(pieces)                                                                                                          \
-  "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\"><UnstructuredGrid>" pieces                 \
+#define VTU(pieces)                                                                                                    \
+  "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\"><UnstructuredGrid>" pieces           \
   "</UnstructuredGrid></VTKFile>"
-#define VALUES(type, name, values) "<DataArray type=\"" type "\" Name=\"" name "\" format=\"ascii\">" values "</DataArray>"
+#define VALUES(type, name, values)                                                                                     \
+  "<DataArray type=\"" type "\" Name=\"" name "\" format=\"ascii\">" values "</DataArray>"
 #define OF_POINTS(arrays) "<PointData>" arrays "</PointData>"
-#define OF_CELLS(arrays) "<CellData>" arrays "</CellData>"
-#define PVTU(sources) "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\"><PUnstructuredGrid>" sources "</PUnstructuredGrid></VTKFile>"
+#define OF_CELLS(arrays)  "<CellData>" arrays "</CellData>"
+#define PVTU(sources)                                                                                                  \
+  "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\"><PUnstructuredGrid>" sources "</PUnstructuredGrid></VTKFile>"
 #define SOURCE(file) "<Piece Source=\"" file "\"/>"
 
 /* Two tetrahedra either side of the triangle (1 0 0) (0 1 0) (0 0 1). */
-#define LEFT "0 0 0 1 0 0 0 1 0 0 0 1"
+#define LEFT  "0 0 0 1 0 0 0 1 0 0 0 1"
 #define RIGHT "1 0 0 0 1 0 0 0 1 1 1 1"
 
 static TetcastMesh *mesh_of(const TetcastDataset *dataset) {
@@ -33,15 +35,18 @@ static void assert_same_mesh(const TetcastDataset *a, const TetcastDataset *b) {
   assert_int_equal(tetcast_mesh_tetrahedron_count(mesh[0]), tetcast_mesh_tetrahedron_count(mesh[1]));
   for (int64_t i = 0; i < tetcast_mesh_vertex_count(mesh[0]); ++i) {
     double p[2][3];
-    for (int j = 0; j < 2; ++j) tetcast_mesh_vertex(mesh[j], i, p[j]);
+    for (int j = 0; j < 2; ++j)
+      tetcast_mesh_vertex(mesh[j], i, p[j]);
     assert_memory_equal(p[0], p[1], sizeof p[0]);
   }
   for (int64_t i = 0; i < tetcast_mesh_tetrahedron_count(mesh[0]); ++i) {
     int64_t v[2][4];
-    for (int j = 0; j < 2; ++j) tetcast_mesh_tetrahedron(mesh[j], i, v[j]);
+    for (int j = 0; j < 2; ++j)
+      tetcast_mesh_tetrahedron(mesh[j], i, v[j]);
     assert_memory_equal(v[0], v[1], sizeof v[0]);
   }
-  for (int j = 0; j < 2; ++j) tetcast_mesh_destroy(&mesh[j]);
+  for (int j = 0; j < 2; ++j)
+    tetcast_mesh_destroy(&mesh[j]);
 }
 
 /* Pieces in the order of the whole's cells make the whole's very mesh, with ghosts of either kind and without. */
@@ -68,7 +73,8 @@ static void test_layers(void **state) {
     assert_int_equal(tetcast_dataset_point_count(dataset), 60 + 24 + (ghosts ? 48 : 0));
     assert_int_equal(tetcast_dataset_cell_count(dataset), 24 + (ghosts ? 24 : 0));
     TetcastDatasetArray array; /* the marks are no field */
-    for (int i = 0; tetcast_dataset_array(dataset, i, &array); ++i) assert_null(strstr(array.name, "Ghost"));
+    for (int i = 0; tetcast_dataset_array(dataset, i, &array); ++i)
+      assert_null(strstr(array.name, "Ghost"));
     tetcast_dataset_destroy(&dataset);
 
     /* One piece alone: without its ghosts. */
@@ -105,7 +111,8 @@ static TetcastMeshHealth health_of(Fixture *fixture, const TetcastDataset *datas
 /* Pieces whose points are a little apart stay apart, unless a tolerance says otherwise. */
 static void test_tolerance(void **state) {
   Fixture *fixture = *state;
-  const char *path = text_file(fixture, "near.vtu", VTU(PIECE("", LEFT) PIECE("", "1.000001 0 0 0 1 -1e-6 0 0 1 1 1 1")));
+  const char *path =
+      text_file(fixture, "near.vtu", VTU(PIECE("", LEFT) PIECE("", "1.000001 0 0 0 1 -1e-6 0 0 1 1 1 1")));
   static const struct {
     double tolerance;
     int merged, faces;
@@ -120,19 +127,23 @@ static void test_tolerance(void **state) {
   }
 }
 
-/* Coincident points of one piece are a crack, which stays, alone and between others; with a tolerance of 0 it is closed. */
+/* Coincident points of one piece are a crack, which stays, alone and between others; with a tolerance of 0 it is
+ * closed. */
 static void test_cracks(void **state) {
   Fixture *fixture = *state;
-  static const char crack[] = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n" LEFT " " RIGHT
-                              "\nCELLS 2 10\n4 0 1 2 3\n4 4 5 6 7\nCELL_TYPES 2\n10\n10\n";
+  static const char crack[] = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n" LEFT
+                              " " RIGHT "\nCELLS 2 10\n4 0 1 2 3\n4 4 5 6 7\nCELL_TYPES 2\n10\n10\n";
   text_file(fixture, "far.vtu", VTU(PIECE("", "2 1 1 1 2 1 1 1 2 1 1 1")));
   const char *path = text_file(fixture, "crack.vtk", crack);
   for (int list = 0; list < 2; ++list) {
-    if (list) path = text_file(fixture, "crack.pvd", "<VTKFile type=\"Collection\"><Collection><DataSet file=\"crack.vtk\"/>"
-                                                     "<DataSet file=\"far.vtu\"/></Collection></VTKFile>");
+    if (list)
+      path = text_file(fixture, "crack.pvd",
+                       "<VTKFile type=\"Collection\"><Collection><DataSet file=\"crack.vtk\"/>"
+                       "<DataSet file=\"far.vtu\"/></Collection></VTKFile>");
     for (int closed = 0; closed < 2; ++closed) {
       TetcastDatasetDesc desc = tetcast_dataset_desc_default();
-      if (closed) desc.merge_tolerance = 0;
+      if (closed)
+        desc.merge_tolerance = 0;
       TetcastDataset *dataset = read_with(fixture, path, desc);
       const TetcastMeshHealth health = health_of(fixture, dataset);
       assert_int_equal(health.boundary_faces, (closed ? 6 : 8) + (list ? 4 : 0));
@@ -150,7 +161,8 @@ static double value_at(const TetcastDataset *dataset, const char *name, double x
   for (int64_t i = 0; i < tetcast_mesh_vertex_count(mesh); ++i) {
     double p[3];
     tetcast_mesh_vertex(mesh, i, p);
-    if (p[0] == x && p[1] == y && p[2] == z) value = tetcast_field_value(field, i);
+    if (p[0] == x && p[1] == y && p[2] == z)
+      value = tetcast_field_value(field, i);
   }
   tetcast_field_destroy(&field);
   tetcast_mesh_destroy(&mesh);
@@ -160,10 +172,12 @@ static double value_at(const TetcastDataset *dataset, const char *name, double x
 /* The first piece's values count, unless it calls the point a duplicate; NaN where a piece has none. */
 static void test_values(void **state) {
   Fixture *fixture = *state;
-  text_file(fixture, "left.vtu", VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "1 2 3 4") VALUES("Float32", "mixed", "1 2 3 4")), LEFT)));
+  text_file(fixture, "left.vtu",
+            VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "1 2 3 4") VALUES("Float32", "mixed", "1 2 3 4")), LEFT)));
   text_file(fixture, "right.vtu",
             VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "2 3.5 4 5") VALUES("Int32", "mixed", "2 3 4 16777217"))
-                          OF_CELLS(VALUES("Int32", "b", "7")), RIGHT)));
+                          OF_CELLS(VALUES("Int32", "b", "7")),
+                      RIGHT)));
   const char *path = text_file(fixture, "values.pvtu", PVTU(SOURCE("left.vtu") SOURCE("right.vtu")));
   TetcastDataset *dataset = read_with(fixture, path, tetcast_dataset_desc_default());
   assert_int_equal(fixture->warnings, 2); /* of the point, and of b */
@@ -179,15 +193,18 @@ static void test_values(void **state) {
 
   text_file(fixture, "marked.vtu",
             VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "1 2 3 4") VALUES("UInt8", "vtkGhostType", "0 0 1 0")), LEFT)));
-  dataset = read_with(fixture, text_file(fixture, "values.pvtu", PVTU(SOURCE("marked.vtu") SOURCE("right.vtu"))), tetcast_dataset_desc_default());
+  dataset = read_with(fixture, text_file(fixture, "values.pvtu", PVTU(SOURCE("marked.vtu") SOURCE("right.vtu"))),
+                      tetcast_dataset_desc_default());
   assert_true(value_at(dataset, "a", 0, 1, 0) == 3.5);
   assert_int_equal(tetcast_dataset_pieces(dataset).ghost_cells, 0);
   tetcast_dataset_destroy(&dataset);
 
   text_file(fixture, "pairs.vtu",
             VTU(PIECE(OF_POINTS("<DataArray type=\"Float64\" Name=\"mixed\" NumberOfComponents=\"2\" format=\"ascii\">"
-                                "1 2 3 4 5 6 7 8</DataArray>"), RIGHT)));
-  dataset = read_with(fixture, text_file(fixture, "values.pvtu", PVTU(SOURCE("left.vtu") SOURCE("pairs.vtu"))), tetcast_dataset_desc_default());
+                                "1 2 3 4 5 6 7 8</DataArray>"),
+                      RIGHT)));
+  dataset = read_with(fixture, text_file(fixture, "values.pvtu", PVTU(SOURCE("left.vtu") SOURCE("pairs.vtu"))),
+                      tetcast_dataset_desc_default());
   assert_int_equal(fixture->warnings, 2); /* of `mixed`, and that one lacks a */
   TetcastDatasetArray array;
   assert_true(tetcast_dataset_array(dataset, 0, &array));
@@ -196,13 +213,16 @@ static void test_values(void **state) {
   tetcast_dataset_destroy(&dataset);
 }
 
-/* Points whose coordinates are not finite go with the cells that use them, also where ghosts go and points are merged. */
+/* Points whose coordinates are not finite go with the cells that use them, also where ghosts go and points are merged.
+ */
 static void test_nonfinite(void **state) {
   Fixture *fixture = *state;
   text_file(fixture, "left.vtu", VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "1 2 3 4")), LEFT)));
   text_file(fixture, "bad.vtu",
-            VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "2 3 4 9")) OF_CELLS(VALUES("Float32", "b", "8")), "1 0 0 0 1 0 0 0 1 1 nan 1")));
-  text_file(fixture, "right.vtu", VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "2 3 4 5")) OF_CELLS(VALUES("Float32", "b", "7")), RIGHT)));
+            VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "2 3 4 9")) OF_CELLS(VALUES("Float32", "b", "8")),
+                      "1 0 0 0 1 0 0 0 1 1 nan 1")));
+  text_file(fixture, "right.vtu",
+            VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "2 3 4 5")) OF_CELLS(VALUES("Float32", "b", "7")), RIGHT)));
   const char *path = text_file(fixture, "all.pvtu", PVTU(SOURCE("left.vtu") SOURCE("bad.vtu") SOURCE("right.vtu")));
   TetcastDataset *dataset = read_with(fixture, path, tetcast_dataset_desc_default());
   assert_int_equal(fixture->warnings, 2); /* of the coordinate, and of b */
@@ -222,7 +242,8 @@ static void test_nonfinite(void **state) {
   tetcast_field_destroy(&field);
   tetcast_dataset_destroy(&dataset);
 
-  text_file(fixture, "ghost.vtu", VTU(PIECE(OF_CELLS(VALUES("UInt8", "vtkGhostType", "1")), "1 0 0 0 1 0 0 0 1 inf 1 1")));
+  text_file(fixture, "ghost.vtu",
+            VTU(PIECE(OF_CELLS(VALUES("UInt8", "vtkGhostType", "1")), "1 0 0 0 1 0 0 0 1 inf 1 1")));
   path = text_file(fixture, "all.pvtu", PVTU(SOURCE("left.vtu") SOURCE("ghost.vtu")));
   dataset = read_with(fixture, path, tetcast_dataset_desc_default());
   assert_int_equal(tetcast_dataset_pieces(dataset).ghost_cells, 1);
@@ -234,7 +255,9 @@ static void test_nonfinite(void **state) {
 }
 
 /* The mean of the neighbours' numbers along one axis of the box: cells `at − 1` and `at`, of `count`. */
-static double mean_number(double at, int count) { return at == 0 ? 0 : at == count ? count - 1 : at - 0.5; }
+static double mean_number(double at, int count) {
+  return at == 0 ? 0 : at == count ? count - 1 : at - 0.5;
+}
 
 /* Cell arrays averaged to points are those of the whole for pieces, too; cells without a value don't count. */
 static void test_cell_to_point(void **state) {
@@ -270,14 +293,19 @@ static void test_cell_to_point(void **state) {
     tetcast_dataset_destroy(&dataset);
   }
 
-  /* Three cells at a triangle: a number, NaN, and a surface, which is no cell of the mesh; vectors by components, then their length. */
+  /* Three cells at a triangle: a number, NaN, and a surface, which is no cell of the mesh; vectors by components, then
+   * their length. */
   const char *path = text_file(
       fixture, "three.vtu",
-      VTU("<Piece NumberOfPoints=\"6\" NumberOfCells=\"3\">" OF_CELLS(
-          VALUES("Float64", "c", "4 nan 100") "<DataArray type=\"Float64\" Name=\"v\" NumberOfComponents=\"2\" format=\"ascii\">"
-                                              "3 4 -3 4 9 9</DataArray>") "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
-          "format=\"ascii\">" LEFT " 1 1 1 5 5 5</DataArray></Points><Cells>" VALUES("Int32", "connectivity", "0 1 2 3 1 2 3 4 1 2 5")
-              VALUES("Int32", "offsets", "4 8 11") VALUES("UInt8", "types", "10 10 5") "</Cells></Piece>"));
+      VTU("<Piece NumberOfPoints=\"6\" NumberOfCells=\"3\">" OF_CELLS(VALUES(
+          "Float64", "c",
+          "4 nan 100") "<DataArray type=\"Float64\" Name=\"v\" NumberOfComponents=\"2\" format=\"ascii\">"
+                       "3 4 -3 4 9 9</DataArray>") "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
+                                                   "format=\"ascii\">" LEFT
+                                                   " 1 1 1 5 5 5</DataArray></Points><Cells>" VALUES(
+                                                       "Int32", "connectivity", "0 1 2 3 1 2 3 4 1 2 5")
+                                                       VALUES("Int32", "offsets", "4 8 11")
+                                                           VALUES("UInt8", "types", "10 10 5") "</Cells></Piece>"));
   TetcastDataset *dataset = read_with(fixture, path, desc);
   static const struct {
     const char *selector;
@@ -303,23 +331,28 @@ static void test_cell_to_point_twice(void **state) {
   Fixture *fixture = *state;
   TetcastDatasetDesc desc = tetcast_dataset_desc_default();
   desc.cell_to_point = true;
-  const char *path = text_file(fixture, "twice.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n" LEFT
-                               "\nCELLS 2 10\n4 0 1 2 3\n4 1 1 2 3\nCELL_TYPES 2\n10\n10\nCELL_DATA 2\nSCALARS c float\n"
-                               "LOOKUP_TABLE default\n4 10\n");
+  const char *path =
+      text_file(fixture, "twice.vtk",
+                "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n" LEFT
+                "\nCELLS 2 10\n4 0 1 2 3\n4 1 1 2 3\nCELL_TYPES 2\n10\n10\nCELL_DATA 2\nSCALARS c float\n"
+                "LOOKUP_TABLE default\n4 10\n");
   TetcastDataset *dataset = read_with(fixture, path, desc);
-  assert_true(value_at(dataset, "c", 0, 0, 0) == 4 && value_at(dataset, "c", 1, 0, 0) == 7 && value_at(dataset, "c", 0, 1, 0) == 7);
+  assert_true(value_at(dataset, "c", 0, 0, 0) == 4 && value_at(dataset, "c", 1, 0, 0) == 7 &&
+              value_at(dataset, "c", 0, 1, 0) == 7);
   tetcast_dataset_destroy(&dataset);
 }
 
 /* Each piece of a .vtu has arrays of its own, in an order of its own. */
 static void test_arrays_of_pieces(void **state) {
   Fixture *fixture = *state;
-  const char *path = text_file(
-      fixture, "pieces.vtu",
-      VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "1 2 3 4") VALUES("Float64", "b", "5 6 7 8")) OF_CELLS(VALUES("Float32", "c", "1")), LEFT)
-              PIECE(OF_POINTS(VALUES("Float32", "d", "1 1 1 9") VALUES("Float64", "b", "6 7 8 10") VALUES("Float64", "a", "2 3 4 11"))
-                        OF_CELLS(VALUES("Int8", "e", "2") VALUES("Float32", "c", "3")), RIGHT)
-                  PIECE("", "1 0 0 0 1 0 1 1 1 3 0 0")));
+  const char *path =
+      text_file(fixture, "pieces.vtu",
+                VTU(PIECE(OF_POINTS(VALUES("Float64", "a", "1 2 3 4") VALUES("Float64", "b", "5 6 7 8"))
+                              OF_CELLS(VALUES("Float32", "c", "1")),
+                          LEFT) PIECE(OF_POINTS(VALUES("Float32", "d", "1 1 1 9") VALUES("Float64", "b", "6 7 8 10")
+                                                    VALUES("Float64", "a", "2 3 4 11"))
+                                          OF_CELLS(VALUES("Int8", "e", "2") VALUES("Float32", "c", "3")),
+                                      RIGHT) PIECE("", "1 0 0 0 1 0 1 1 1 3 0 0")));
   TetcastDataset *dataset = read_with(fixture, path, tetcast_dataset_desc_default());
   assert_int_equal(fixture->warnings, 1); /* five arrays are missing somewhere */
   assert_int_equal(tetcast_dataset_pieces(dataset).pieces, 3);
@@ -331,7 +364,8 @@ static void test_arrays_of_pieces(void **state) {
     assert_int_equal(array.association, i < 3 ? TETCAST_POINT : TETCAST_CELL);
   }
   assert_false(tetcast_dataset_array(dataset, 5, &array));
-  assert_true(value_at(dataset, "a", 0, 0, 0) == 1 && value_at(dataset, "a", 1, 1, 1) == 11 && isnan(value_at(dataset, "a", 3, 0, 0)));
+  assert_true(value_at(dataset, "a", 0, 0, 0) == 1 && value_at(dataset, "a", 1, 1, 1) == 11 &&
+              isnan(value_at(dataset, "a", 3, 0, 0)));
   assert_true(value_at(dataset, "b", 0, 0, 0) == 5 && value_at(dataset, "b", 1, 1, 1) == 10);
   assert_true(value_at(dataset, "d", 1, 1, 1) == 9 && isnan(value_at(dataset, "d", 0, 0, 0)));
   TetcastField *field;
@@ -345,16 +379,20 @@ static void test_arrays_of_pieces(void **state) {
   tetcast_dataset_destroy(&dataset);
 
   /* Of all these one alone, and one that is not there. */
-  static const char *const selectors[] = {"b", "b:0", "e", "c:mag", "bb", "zz"}, *const found[] = {"b", "b", "e", "c", NULL, NULL};
+  static const char *const selectors[] = {"b", "b:0", "e", "c:mag", "bb", "zz"}, *const found[] = {"b", "b",  "e",
+                                                                                                   "c", NULL, NULL};
   for (int i = 0; i < 6; ++i) {
     TetcastDatasetDesc desc = tetcast_dataset_desc_default();
     desc.only = selectors[i];
     dataset = read_with(fixture, path, desc);
     assert_true(tetcast_dataset_array(dataset, 0, &array) == (found[i] != NULL));
-    if (found[i]) assert_string_equal(array.name, found[i]);
+    if (found[i])
+      assert_string_equal(array.name, found[i]);
     assert_false(tetcast_dataset_array(dataset, 1, &array));
-    assert_int_equal(tetcast_dataset_field(dataset, selectors[i], &field, NULL), found[i] ? TETCAST_OK : TETCAST_ERROR_ARGUMENT);
-    if (!found[i]) assert_complaint(fixture, path, "has no array");
+    assert_int_equal(tetcast_dataset_field(dataset, selectors[i], &field, NULL),
+                     found[i] ? TETCAST_OK : TETCAST_ERROR_ARGUMENT);
+    if (!found[i])
+      assert_complaint(fixture, path, "has no array");
     tetcast_field_destroy(&field);
     tetcast_dataset_destroy(&dataset);
   }
@@ -374,10 +412,12 @@ static void test_odd_lists(void **state) {
   text_file(fixture, "left.vtu", VTU(PIECE("", LEFT)));
   text_file(fixture, "ghost.vtu", VTU(PIECE(OF_CELLS(VALUES("UInt8", "vtkGhostType", "1")), RIGHT)));
   text_file(fixture, "none.vtu",
-            VTU("<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
-                "format=\"ascii\"></DataArray></Points><Cells>" VALUES("Int32", "connectivity", "") VALUES("Int32", "offsets", "")
-                    VALUES("UInt8", "types", "") "</Cells></Piece>"));
-  const char *path = text_file(fixture, "good.pvtu", PVTU(SOURCE("none.vtu") SOURCE("ghost.vtu") SOURCE("left.vtu") SOURCE("none.vtu")));
+            VTU("<Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"><Points><DataArray type=\"Float64\" "
+                "NumberOfComponents=\"3\" "
+                "format=\"ascii\"></DataArray></Points><Cells>" VALUES("Int32", "connectivity", "")
+                    VALUES("Int32", "offsets", "") VALUES("UInt8", "types", "") "</Cells></Piece>"));
+  const char *path = text_file(fixture, "good.pvtu",
+                               PVTU(SOURCE("none.vtu") SOURCE("ghost.vtu") SOURCE("left.vtu") SOURCE("none.vtu")));
   TetcastDataset *dataset = read_with(fixture, path, tetcast_dataset_desc_default());
   assert_int_equal(tetcast_dataset_pieces(dataset).ghost_cells, 1);
   assert_int_equal(tetcast_dataset_pieces(dataset).ghost_points, 4);
@@ -389,9 +429,11 @@ static void test_odd_lists(void **state) {
   read_bad(fixture, text_file(fixture, "a.pvtu", PVTU(SOURCE("none.vtu"))), TETCAST_ERROR_DATA, "no cells");
   read_bad(fixture, text_file(fixture, "a.pvtu", PVTU("")), TETCAST_ERROR_DATA, "no cells");
   read_bad(fixture, text_file(fixture, "a.pvtu", PVTU("<Piece/>")), TETCAST_ERROR_DATA, "names no file");
-  read_bad(fixture, text_file(fixture, "a.pvtu", PVTU(SOURCE("left.vtu") SOURCE("gone.vtu"))), TETCAST_ERROR_IO, "gone.vtu: can't be opened: No such file");
+  read_bad(fixture, text_file(fixture, "a.pvtu", PVTU(SOURCE("left.vtu") SOURCE("gone.vtu"))), TETCAST_ERROR_IO,
+           "gone.vtu: can't be opened: No such file");
   read_bad(fixture, text_file(fixture, "a.pvtu", PVTU(SOURCE("a.pvtu"))), TETCAST_ERROR_DATA, "eight times over");
-  read_bad(fixture, text_file(fixture, "a.pvtu", PVTU(SOURCE("a.pvtu") SOURCE("a.pvtu") SOURCE("a.pvtu") SOURCE("a.pvtu"))),
+  read_bad(fixture,
+           text_file(fixture, "a.pvtu", PVTU(SOURCE("a.pvtu") SOURCE("a.pvtu") SOURCE("a.pvtu") SOURCE("a.pvtu"))),
            TETCAST_ERROR_DATA, "eight times over");
 }
 
@@ -406,7 +448,8 @@ static void test_others_pieces(void **state) {
     const TetcastMeshHealth health = health_of(fixture, dataset);
     assert_int_equal(tetcast_dataset_pieces(dataset).pieces, 4);
     assert_int_equal(tetcast_dataset_pieces(dataset).ghost_cells, i ? 529 : 0);
-    assert_int_equal(tetcast_dataset_cell_count(dataset) - tetcast_dataset_pieces(dataset).ghost_cells, tetcast_dataset_cell_count(whole));
+    assert_int_equal(tetcast_dataset_cell_count(dataset) - tetcast_dataset_pieces(dataset).ghost_cells,
+                     tetcast_dataset_cell_count(whole));
     assert_true(fabs(health.volume / expected.volume - 1) < 1e-12);
     assert_int_equal(health.boundary_faces, expected.boundary_faces);
     assert_int_equal(health.components, expected.components);
@@ -426,7 +469,9 @@ static void test_others_pieces(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {TEST(test_layers), TEST(test_blanked), TEST(test_tolerance), TEST(test_cracks),
-                                     TEST(test_values), TEST(test_nonfinite), TEST(test_cell_to_point), TEST(test_cell_to_point_twice), TEST(test_arrays_of_pieces), TEST(test_odd_lists), TEST(test_others_pieces)};
+  const struct CMUnitTest tests[] = {
+      TEST(test_layers),           TEST(test_blanked),   TEST(test_tolerance),     TEST(test_cracks),
+      TEST(test_values),           TEST(test_nonfinite), TEST(test_cell_to_point), TEST(test_cell_to_point_twice),
+      TEST(test_arrays_of_pieces), TEST(test_odd_lists), TEST(test_others_pieces)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

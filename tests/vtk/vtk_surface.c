@@ -8,7 +8,8 @@ static TetcastSurface surface_good(Fixture *fixture, const char *path) {
   TetcastSurface surface;
   fixture->errors = 0;
   const TetcastStatus status = tetcast_surface_read(fixture->context, path, &surface);
-  if (status) print_error("%s\n", fixture->message);
+  if (status)
+    print_error("%s\n", fixture->message);
   assert_int_equal(status, TETCAST_OK);
   for (int64_t i = 0; i < 3 * surface.triangle_count; ++i) {
     assert_true(surface.triangles[i] >= 0 && surface.triangles[i] < surface.vertex_count);
@@ -20,7 +21,8 @@ static double area(const TetcastSurface *surface) {
   double sum = 0;
   for (int64_t i = 0; i < surface->triangle_count; ++i) {
     const double *p[3];
-    for (int j = 0; j < 3; ++j) p[j] = surface->vertices + 3 * surface->triangles[3 * i + j];
+    for (int j = 0; j < 3; ++j)
+      p[j] = surface->vertices + 3 * surface->triangles[3 * i + j];
     double u[3], v[3];
     for (int k = 0; k < 3; ++k) {
       u[k] = p[1][k] - p[0][k];
@@ -33,8 +35,8 @@ static double area(const TetcastSurface *surface) {
 }
 
 #define PLY_VERTEX "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-#define PLY_FACE "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
-#define LEGACY "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0 0 1 0\n"
+#define PLY_FACE   "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+#define LEGACY     "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0 0 1 0\n"
 
 /* One square, in every format; a point that coincides with another, and one that nothing uses, go. */
 static void test_formats(void **state) {
@@ -79,7 +81,8 @@ static void test_formats(void **state) {
 /* Puts a number of `size` bytes at *at, in the byte order asked for. */
 static void put(unsigned char **at, const void *value, size_t size, bool big) {
   const unsigned char *bytes = value;
-  for (size_t i = 0; i < size; ++i) *(*at)++ = bytes[big ? size - 1 - i : i];
+  for (size_t i = 0; i < size; ++i)
+    *(*at)++ = bytes[big ? size - 1 - i : i];
 }
 
 static void test_binary_formats(void **state) {
@@ -93,10 +96,12 @@ static void test_binary_formats(void **state) {
                   big ? "big" : "little");
     for (int i = 0; i < 4; ++i) {
       *at++ = 7;
-      for (int k = 0; k < 3; ++k) put(&at, &corners[i][k], 8, big);
+      for (int k = 0; k < 3; ++k)
+        put(&at, &corners[i][k], 8, big);
     }
     *at++ = 4;
-    for (int32_t i = 0; i < 4; ++i) put(&at, &i, 4, big);
+    for (int32_t i = 0; i < 4; ++i)
+      put(&at, &i, 4, big);
     const size_t size = (size_t)(at - bytes);
     TetcastSurface surface = surface_good(fixture, file_of(fixture, "a.ply", bytes, size));
     assert_true(surface.triangle_count == 2 && area(&surface) == 1);

@@ -57,8 +57,10 @@ static TetcastMesh *make_mesh(Fixture *fixture, const Arrays *a, TetcastType poi
     desc.vertices.stride = sizeof a->points_narrow[0];
   }
   desc.tetrahedra = (TetcastArray){.data = a->cells, .type = index_type, .count = CELLS};
-  if (index_type == TETCAST_TYPE_INT32) desc.tetrahedra.data = a->cells_narrow;
-  if (index_type == TETCAST_TYPE_UINT32) desc.tetrahedra.data = a->cells_unsigned;
+  if (index_type == TETCAST_TYPE_INT32)
+    desc.tetrahedra.data = a->cells_narrow;
+  if (index_type == TETCAST_TYPE_UINT32)
+    desc.tetrahedra.data = a->cells_unsigned;
   TetcastMesh *mesh;
   assert_int_equal(tetcast_mesh_create(fixture->context, &desc, &mesh), TETCAST_OK);
   return mesh;
@@ -113,8 +115,10 @@ static void test_round_trip(void **state) {
     }
     assert_int_equal(cells.type, index_types[i / 2] == TETCAST_TYPE_UINT32 ? TETCAST_TYPE_INT64 : index_types[i / 2]);
     assert_int_equal(cells.count, CELLS);
-    if (cells.type == TETCAST_TYPE_INT64) assert_memory_equal(cells.data, a->cells, sizeof a->cells);
-    else assert_memory_equal(cells.data, a->cells_narrow, sizeof a->cells_narrow);
+    if (cells.type == TETCAST_TYPE_INT64)
+      assert_memory_equal(cells.data, a->cells, sizeof a->cells);
+    else
+      assert_memory_equal(cells.data, a->cells_narrow, sizeof a->cells_narrow);
     assert_same_field(dataset, names[0], a->point_values, TETCAST_TYPE_FLOAT64, sizeof a->point_values);
     assert_same_field(dataset, NULL, a->point_values, TETCAST_TYPE_FLOAT64, sizeof a->point_values);
     assert_same_field(dataset, names[1], a->cell_values, TETCAST_TYPE_FLOAT32, sizeof a->cell_values);
@@ -124,7 +128,8 @@ static void test_round_trip(void **state) {
     tetcast_mesh_destroy(&mesh);
     assert_int_equal(empty_folder(fixture), 1);
   }
-  for (int i = 0; i < 3; ++i) tetcast_field_destroy(&fields[i]);
+  for (int i = 0; i < 3; ++i)
+    tetcast_field_destroy(&fields[i]);
   free(a);
 }
 
@@ -187,7 +192,8 @@ static void test_failures(void **state) {
   assert_refused(fixture, tetcast_dataset_write(context, fixture->path, mesh, 0, NULL, NULL), TETCAST_ERROR_IO,
                  "is a folder");
   assert_int_equal(rmdir(fixture->path), 0);
-  for (int i = 0; i < 3; ++i) tetcast_field_destroy(&fields[i]);
+  for (int i = 0; i < 3; ++i)
+    tetcast_field_destroy(&fields[i]);
   tetcast_mesh_destroy(&mesh);
   free(a);
 }

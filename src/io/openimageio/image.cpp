@@ -363,7 +363,7 @@ void write_picture(TetcastContext *context, const char *path, const Pixels &pixe
   if (!pixels.extras.empty() && (!is_float(type) || !output->supports("nchannels")))
     fail(context, TETCAST_ERROR_ARGUMENT, path,
          std::string("the frame has the channel ") + pixels.extras[0].name +
-           ", which only floating-point pixels in .exr and .tif can hold");
+             ", which only floating-point pixels in .exr and .tif can hold");
   if (!pixels.extras.empty() && type == TypeDesc::HALF && !output->supports("channelformats"))
     fail(context, TETCAST_ERROR_ARGUMENT, path,
          std::string("the channel ") + pixels.extras[0].name + " does not fit into pixels of type half in this format");
@@ -414,7 +414,8 @@ TetcastStatus guarded(TetcastContext *context, const char *path, const Pixels &p
   if (pixel_type < TETCAST_PIXEL_DEFAULT || pixel_type > TETCAST_PIXEL_DOUBLE)
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "unknown pixel type %d", pixel_type);
   if (desc.channels_only && pixels.extras.empty() && publish)
-    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "an image of a frame's channels only, but it has none");
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
+                                 "an image of a frame's channels only, but it has none");
   for (double value : desc.background)
     if (!(value >= 0 && value <= 1))
       return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "background component %g is outside [0, 1]", value);
@@ -453,9 +454,13 @@ TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, con
   if (!context || !path || !frame)
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
                                  "tetcast_image_write: context, path and frame are needed");
-  const Pixels pixels = {tetcast_frame_pixels(frame), tetcast_frame_width(frame), tetcast_frame_height(frame),
-                         tetcast_frame_row_stride(frame), tetcast_frame_type(frame) == TETCAST_TYPE_FLOAT64,
-                         extras_of(frame), desc && desc->channels_only};
+  const Pixels pixels = {tetcast_frame_pixels(frame),
+                         tetcast_frame_width(frame),
+                         tetcast_frame_height(frame),
+                         tetcast_frame_row_stride(frame),
+                         tetcast_frame_type(frame) == TETCAST_TYPE_FLOAT64,
+                         extras_of(frame),
+                         desc && desc->channels_only};
   return guarded(context, path, pixels, desc, true);
 }
 

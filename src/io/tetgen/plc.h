@@ -19,9 +19,9 @@ struct Failure {
 
 [[noreturn]] void fail(TetcastStatus status, const char *format, ...)
 #if defined(__GNUC__)
-  __attribute__((format(printf, 2, 3)))
+    __attribute__((format(printf, 2, 3)))
 #endif
-  ;
+    ;
 
 // TetGen counts in int and keeps four indices per cell in one array.
 constexpr int64_t MAX_COUNT = (int64_t{1} << 29) - 1;

@@ -145,7 +145,9 @@ int64_t read_nodes(Numbers &in, std::vector<double> &points) {
   return first;
 }
 
-std::string stem_of(const std::string &path) { return path.substr(0, path.find_last_of('.')); }
+std::string stem_of(const std::string &path) {
+  return path.substr(0, path.find_last_of('.'));
+}
 
 // One polygon's corners, which may run over several lines.
 void read_corners(Numbers &in, Plc &plc, int64_t first) {

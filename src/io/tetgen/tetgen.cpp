@@ -20,7 +20,9 @@
 // TetGen 1.5 ends failures here: its own version frees the mesh and throws, whereupon the mesh's destructor frees it
 // again. This one comes before it when the dynamic linker looks the name up.
 __attribute__((visibility("default"))) void terminatetetgen(tetgenmesh *, int code);
-void terminatetetgen(tetgenmesh *, int code) { throw code; }
+void terminatetetgen(tetgenmesh *, int code) {
+  throw code;
+}
 
 namespace tetcast_tetgen {
 
@@ -269,7 +271,9 @@ bool ends_with(const std::string &text, const char *end) {
 
 using namespace tetcast_tetgen;
 
-TetcastTetgenDesc tetcast_tetgen_desc_default(void) { return {COOKIE, 1.4, 0}; }
+TetcastTetgenDesc tetcast_tetgen_desc_default(void) {
+  return {COOKIE, 1.4, 0};
+}
 
 TetcastStatus tetcast_tetgen_mesh(TetcastContext *context, const TetcastSurface *surface, const TetcastTetgenDesc *desc,
                                   TetcastMesh **mesh) {

@@ -32,7 +32,9 @@ public:
   static Window *New();
   vtkTypeMacro(Window, vtkOutputWindow)
 
-  void DisplayText(const char *text) override { take(text, false, &vtkOutputWindow::DisplayText); }
+      void DisplayText(const char *text) override {
+    take(text, false, &vtkOutputWindow::DisplayText);
+  }
   void DisplayErrorText(const char *text) override { take(text, true, &vtkOutputWindow::DisplayErrorText); }
   void DisplayWarningText(const char *text) override { take(text, false, &vtkOutputWindow::DisplayWarningText); }
   // The legacy readers report unreadable values this way and go on.
@@ -53,14 +55,16 @@ private:
     vtkSmartPointer<vtkOutputWindow> window;
     {
       const std::lock_guard<std::mutex> lock(mutex);
-      if (previous_display) window = previous;
+      if (previous_display)
+        window = previous;
     }
-    if (window) (window.Get()->*display)(text);
+    if (window)
+      (window.Get()->*display)(text);
   }
 };
 vtkStandardNewMacro(Window)
 
-vtkOutputWindow *our_window() {
+    vtkOutputWindow *our_window() {
   static vtkSmartPointer<Window> window = vtkSmartPointer<Window>::New(); // for good: a thread may still be inside it
   return window;
 }
@@ -70,19 +74,24 @@ std::string tidy(const char *text) {
   const char *start = text;
   if (std::strstr(text, ": In ") || std::strstr(text, ":  In ")) {
     const char *line = std::strchr(text, '\n');
-    if (line) start = line + 1;
+    if (line)
+      start = line + 1;
   }
   if (std::strncmp(start, "vtk", 3) == 0) {
     const char *object = std::strstr(start, "): ");
-    if (object && std::strchr(start, '(') < object) start = object + 3;
+    if (object && std::strchr(start, '(') < object)
+      start = object + 3;
   }
   std::string line;
   for (const char *c = start; *c && line.size() < 400; ++c) {
     const bool space = static_cast<unsigned char>(*c) <= ' ';
-    if (!space) line += *c;
-    else if (!line.empty() && line.back() != ' ') line += ' ';
+    if (!space)
+      line += *c;
+    else if (!line.empty() && line.back() != ' ')
+      line += ' ';
   }
-  while (!line.empty() && line.back() == ' ') line.pop_back();
+  while (!line.empty() && line.back() == ' ')
+    line.pop_back();
   return line;
 }
 
@@ -109,12 +118,14 @@ Capture::Capture() {
 Capture::~Capture() {
   current = nullptr;
   const std::lock_guard<std::mutex> lock(mutex);
-  if (--captures > 0) return;
+  if (--captures > 0)
+    return;
 #ifdef TETCAST_VTK_LOGURU
   loguru::g_stderr_verbosity = previous_verbosity;
 #endif
   vtkObject::SetGlobalWarningDisplay(previous_display);
-  if (vtkOutputWindow::GetInstance() == our_window()) vtkOutputWindow::SetInstance(previous);
+  if (vtkOutputWindow::GetInstance() == our_window())
+    vtkOutputWindow::SetInstance(previous);
   previous = nullptr;
 }
 
@@ -142,14 +153,17 @@ std::string Doubt::error() const {
 void Capture::add(const char *text, bool is_error) noexcept {
   try {
     // Says only that a note in the file belongs to a part of VTK that isn't loaded: nothing that concerns the mesh.
-    if (!is_error && std::strstr(text, "Could not locate key")) return;
+    if (!is_error && std::strstr(text, "Could not locate key"))
+      return;
     // Follows the error itself, or an error code, and is a page of addresses.
     const bool says_nothing = std::strstr(text, "returned failure for request") != nullptr;
     std::string &first = is_error ? error_ : warning_;
-    if (first.empty() && !says_nothing) first = tidy(text);
+    if (first.empty() && !says_nothing)
+      first = tidy(text);
   } catch (...) { // out of memory: that something was said still counts
   }
-  if (is_error) failed_ = true;
+  if (is_error)
+    failed_ = true;
 }
 
 } // namespace tcv

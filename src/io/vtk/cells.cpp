@@ -95,7 +95,8 @@ const CellType cell_types[] = {
 
 const CellType *find_type(int id) {
   for (const CellType &type : cell_types) {
-    if (type.id == id) return &type;
+    if (type.id == id)
+      return &type;
   }
   return nullptr;
 }
@@ -111,14 +112,16 @@ void survey(const char *path, vtkUnstructuredGrid *grid, tcv::Tetrahedra *result
               static_cast<long long>(types ? types->GetNumberOfValues() : 0));
   }
   TypeTable table = {};
-  for (const CellType &type : cell_types) table[static_cast<size_t>(type.id)] = &type;
+  for (const CellType &type : cell_types)
+    table[static_cast<size_t>(type.id)] = &type;
   std::array<int64_t, 256> counts = {};
   vtkCellArray *connectivity = grid->GetCells();
   for (int64_t i = 0; i < cells; ++i) {
     const unsigned char id = types->GetValue(i);
     const CellType *type = table[id];
     const long long cell = i;
-    if (!type) tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: there is no cell type %d", path, cell, id);
+    if (!type)
+      tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: there is no cell type %d", path, cell, id);
     const long long points = connectivity->GetCellSize(i);
     if (points < type->points) {
       tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: a %s has %d points, not %lld", path, cell, type->name, type->points,
@@ -129,10 +132,12 @@ void survey(const char *path, vtkUnstructuredGrid *grid, tcv::Tetrahedra *result
   bool volumetric = false;
   const CellType *refused = nullptr;
   for (size_t id = 0; id < counts.size(); ++id) {
-    if (!counts[id]) continue;
+    if (!counts[id])
+      continue;
     result->types.emplace_back(table[id]->name, counts[id]);
     volumetric = volumetric || table[id]->way != IGNORED;
-    if (table[id]->way == REFUSED) refused = table[id];
+    if (table[id]->way == REFUSED)
+      refused = table[id];
   }
   std::stable_sort(result->types.begin(), result->types.end(), [](auto &a, auto &b) { return a.second > b.second; });
   if (refused)
@@ -146,10 +151,13 @@ void survey(const char *path, vtkUnstructuredGrid *grid, tcv::Tetrahedra *result
   }
 }
 
-// A view of numbers of any type; copied to `storage` if they are of one that TetcastType lacks. None is a view of nothing.
+// A view of numbers of any type; copied to `storage` if they are of one that TetcastType lacks. None is a view of
+// nothing.
 TetcastArray numbers_of(vtkDataArray *array, std::vector<double> *storage) {
-  if (!array) return {};
-  if (tcv::type_of(array) != TETCAST_TYPE_NONE) return tcv::view_of(array);
+  if (!array)
+    return {};
+  if (tcv::type_of(array) != TETCAST_TYPE_NONE)
+    return tcv::view_of(array);
   const int components = array->GetNumberOfComponents();
   storage->resize(static_cast<size_t>(array->GetNumberOfTuples()) * static_cast<size_t>(components));
   for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i) {
@@ -162,7 +170,9 @@ TetcastArray numbers_of(vtkDataArray *array, std::vector<double> *storage) {
   return view;
 }
 
-void remember(void *user, TetcastSeverity, const char *text) { *static_cast<std::string *>(user) = text; }
+void remember(void *user, TetcastSeverity, const char *text) {
+  *static_cast<std::string *>(user) = text;
+}
 
 void cut_all(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, const tcv::CutOptions &options,
              tcv::Tetrahedra *result) {
@@ -194,12 +204,15 @@ void cut_all(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, 
   own.message = remember;
   own.message_user = &words;
   TetcastContext *context = nullptr;
-  if (tetcast_context_create(&own, &context) != TETCAST_OK) throw std::bad_alloc();
+  if (tetcast_context_create(&own, &context) != TETCAST_OK)
+    throw std::bad_alloc();
   result->context.reset(context);
   TetcastCut *cut = nullptr;
   const TetcastStatus status = tetcast_cells_cut(context, &desc, &cut);
-  if (status == TETCAST_ERROR_MEMORY) throw std::bad_alloc();
-  if (status != TETCAST_OK) tcv::fail(status, "%s: %s", path, words.c_str());
+  if (status == TETCAST_ERROR_MEMORY)
+    throw std::bad_alloc();
+  if (status != TETCAST_OK)
+    tcv::fail(status, "%s: %s", path, words.c_str());
   result->cut.reset(cut);
   tetcast_cut_info(cut, &result->info);
 }
@@ -279,12 +292,15 @@ void order_wedges(vtkUnstructuredGrid *grid, vtkDataArray *points) {
 // Puts the vertices that were added after the points.
 void add_points(const tcv::Tetrahedra &tetrahedra, vtkDataArray *points) {
   const int64_t added = tetrahedra.info.added_vertices, count = points->GetNumberOfTuples();
-  if (added == 0) return;
+  if (added == 0)
+    return;
   std::vector<double> positions(3 * static_cast<size_t>(added));
   const TetcastArray view = tcv::view_of(points);
   tetcast_cut_interpolate(tetrahedra.cut.get(), &view, 3, positions.data());
-  if (!points->Resize(count + added)) throw std::bad_alloc();
-  for (int64_t i = 0; i < added; ++i) points->InsertNextTuple(positions.data() + 3 * i);
+  if (!points->Resize(count + added))
+    throw std::bad_alloc();
+  for (int64_t i = 0; i < added; ++i)
+    points->InsertNextTuple(positions.data() + 3 * i);
 }
 
 } // namespace
@@ -296,8 +312,12 @@ bool is_volume(int type) {
   return found && found->way != IGNORED;
 }
 
-void ContextDeleter::operator()(TetcastContext *context) const { tetcast_context_destroy(&context); }
-void CutDeleter::operator()(TetcastCut *cut) const { tetcast_cut_destroy(&cut); }
+void ContextDeleter::operator()(TetcastContext *context) const {
+  tetcast_context_destroy(&context);
+}
+void CutDeleter::operator()(TetcastCut *cut) const {
+  tetcast_cut_destroy(&cut);
+}
 
 void make_tetrahedra(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, const CutOptions &options,
                      Tetrahedra *result) {
@@ -314,7 +334,8 @@ void make_tetrahedra(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *
   add_points(*result, points);
   result->view = tetcast_cut_tetrahedra(result->cut.get());
   result->source = tetcast_cut_sources(result->cut.get());
-  if (result->view.count == 0) fail(TETCAST_ERROR_DATA, "%s: no tetrahedron can be made of its cells", path);
+  if (result->view.count == 0)
+    fail(TETCAST_ERROR_DATA, "%s: no tetrahedron can be made of its cells", path);
 }
 
 } // namespace tcv

@@ -25,8 +25,8 @@ struct CutDeleter {
 };
 
 struct Tetrahedra {
-  TetcastArray view = {};                     // [m, 4] into one of the next two
-  vtkSmartPointer<vtkDataArray> connectivity; // the file's own, when all its cells are tetrahedra
+  TetcastArray view = {};                                  // [m, 4] into one of the next two
+  vtkSmartPointer<vtkDataArray> connectivity;              // the file's own, when all its cells are tetrahedra
   std::unique_ptr<TetcastContext, ContextDeleter> context; // of the next
   std::unique_ptr<TetcastCut, CutDeleter> cut;
   TetcastArray source = {}; // [m] int32: the cell of the file that each tetrahedron is of; empty: its own

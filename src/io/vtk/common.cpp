@@ -25,7 +25,8 @@ void fail(TetcastStatus status, const char *format, ...) {
   va_start(arguments, format);
   const int length = std::vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
-  if (length < static_cast<int>(sizeof text)) throw Failure{status, text};
+  if (length < static_cast<int>(sizeof text))
+    throw Failure{status, text};
   std::string whole(static_cast<size_t>(length) + 1, '\0'); // long lists of array names
   va_start(arguments, format);
   std::vsnprintf(&whole[0], whole.size(), format, arguments);
@@ -44,9 +45,12 @@ static File open_file(const char *path, int64_t *size) {
   if (!file || fstat(fileno(file.get()), &status) != 0) {
     fail(TETCAST_ERROR_IO, "%s: can't be opened: %s", path, std::strerror(errno));
   }
-  if (S_ISDIR(status.st_mode)) fail(TETCAST_ERROR_IO, "%s: is a folder", path);
-  if (!S_ISREG(status.st_mode)) fail(TETCAST_ERROR_IO, "%s: is not a regular file", path);
-  if (status.st_size == 0) fail(TETCAST_ERROR_DATA, "%s: is empty", path);
+  if (S_ISDIR(status.st_mode))
+    fail(TETCAST_ERROR_IO, "%s: is a folder", path);
+  if (!S_ISREG(status.st_mode))
+    fail(TETCAST_ERROR_IO, "%s: is not a regular file", path);
+  if (status.st_size == 0)
+    fail(TETCAST_ERROR_DATA, "%s: is empty", path);
   *size = status.st_size;
   return file;
 }
@@ -56,12 +60,17 @@ static std::string read_start(const char *path, int64_t limit) {
   const File file = open_file(path, &size);
   std::string text(static_cast<size_t>(std::min(size, limit)), '\0');
   text.resize(std::fread(&text[0], 1, text.size(), file.get()));
-  if (std::ferror(file.get())) fail(TETCAST_ERROR_IO, "%s: can't be read: %s", path, std::strerror(errno));
+  if (std::ferror(file.get()))
+    fail(TETCAST_ERROR_IO, "%s: can't be read: %s", path, std::strerror(errno));
   return text;
 }
 
-std::string file_head(const char *path) { return read_start(path, 65536); }
-std::string file_contents(const char *path) { return read_start(path, INT64_MAX); }
+std::string file_head(const char *path) {
+  return read_start(path, 65536);
+}
+std::string file_contents(const char *path) {
+  return read_start(path, INT64_MAX);
+}
 
 int64_t file_size(const char *path) {
   struct stat status;
@@ -73,7 +82,8 @@ static bool begins_with(const std::string &text, const char *start) {
 }
 
 static std::string upper_case(std::string text) {
-  for (char &c : text) c = (c >= 'a' && c <= 'z') ? static_cast<char>(c - 'a' + 'A') : c;
+  for (char &c : text)
+    c = (c >= 'a' && c <= 'z') ? static_cast<char>(c - 'a' + 'A') : c;
   return text;
 }
 
@@ -88,12 +98,15 @@ static std::string word_at(const std::string &text, size_t *position) {
 static std::string xml_type(const std::string &head) {
   const size_t element = head.find("<VTKFile");
   const size_t end = head.find('>', element);
-  if (element == std::string::npos || end == std::string::npos) return "";
+  if (element == std::string::npos || end == std::string::npos)
+    return "";
   const std::string tag = head.substr(element, end - element);
   size_t at = tag.find("type");
-  while (at != std::string::npos && std::strchr(" \t\r\n", tag[at - 1]) == nullptr) at = tag.find("type", at + 1);
+  while (at != std::string::npos && std::strchr(" \t\r\n", tag[at - 1]) == nullptr)
+    at = tag.find("type", at + 1);
   const size_t quote = at == std::string::npos ? at : tag.find_first_of("\"'", at);
-  if (quote == std::string::npos) return "";
+  if (quote == std::string::npos)
+    return "";
   const size_t close = tag.find(tag[quote], quote + 1);
   return close == std::string::npos ? "" : tag.substr(quote + 1, close - quote - 1);
 }
@@ -101,8 +114,10 @@ static std::string xml_type(const std::string &head) {
 // Title, ASCII or BINARY, then "DATASET type".
 static std::string legacy_type(const std::string &head) {
   size_t at = 0;
-  for (int line = 0; line < 2 && at != std::string::npos; ++line) at = head.find('\n', at + (line > 0));
-  if (at == std::string::npos) return "";
+  for (int line = 0; line < 2 && at != std::string::npos; ++line)
+    at = head.find('\n', at + (line > 0));
+  if (at == std::string::npos)
+    return "";
   word_at(head, &at);
   const std::string keyword = upper_case(word_at(head, &at));
   return keyword == "DATASET" ? upper_case(word_at(head, &at)) : keyword;
@@ -111,32 +126,43 @@ static std::string legacy_type(const std::string &head) {
 // "FORMAT", on a line of its own, and then "type: ensight".
 static bool is_ensight(const std::string &head) {
   size_t at = begins_with(head, "FORMAT") ? 0 : head.find("\nFORMAT");
-  if (at == std::string::npos) return false;
+  if (at == std::string::npos)
+    return false;
   at = head.find("type:", at);
   return at != std::string::npos && upper_case(head.substr(at, 40)).find("ENSIGHT") != std::string::npos;
 }
 
 std::string file_kind(const std::string &head) {
   const size_t first = head.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
-  if (first == std::string::npos) return "";
-  if (head[first] == '<') return head.find("<VTKFile") == std::string::npos ? "" : "VTKFile " + xml_type(head);
-  if (head[first] == '{') return "JSON";
+  if (first == std::string::npos)
+    return "";
+  if (head[first] == '<')
+    return head.find("<VTKFile") == std::string::npos ? "" : "VTKFile " + xml_type(head);
+  if (head[first] == '{')
+    return "JSON";
   if (begins_with(head, "$MeshFormat") || begins_with(head, "$NOD") ||
       (begins_with(head, "$Comments") && head.find("\n$MeshFormat") != std::string::npos))
     return "Gmsh";
-  if (begins_with(head, "# vtk DataFile")) return "vtk " + legacy_type(head);
+  if (begins_with(head, "# vtk DataFile"))
+    return "vtk " + legacy_type(head);
   if (begins_with(head, "\x89HDF")) { // the names of what is at the top come early
     const auto has = [&](const char *name) { return head.find(name) != std::string::npos; };
     return has("VTKHDF") ? "HDF5 VTKHDF" : has("CGNSLibraryVersion") ? "HDF5 CGNS" : "HDF5";
   }
-  if (begins_with(head, "@(#)ADF Database")) return "ADF";
-  if (begins_with(head, "CDF\x01") || begins_with(head, "CDF\x02") || begins_with(head, "CDF\x05")) return "NetCDF";
-  if (begins_with(head, "ply\n") || begins_with(head, "ply\r")) return "PLY";
-  if (is_ensight(head)) return "EnSight";
+  if (begins_with(head, "@(#)ADF Database"))
+    return "ADF";
+  if (begins_with(head, "CDF\x01") || begins_with(head, "CDF\x02") || begins_with(head, "CDF\x05"))
+    return "NetCDF";
+  if (begins_with(head, "ply\n") || begins_with(head, "ply\r"))
+    return "PLY";
+  if (is_ensight(head))
+    return "EnSight";
   size_t at = 0;
   const std::string word = word_at(head, &at);
-  if (word.size() <= 8 && word.size() >= 3 && word.compare(word.size() - 3, 3, "OFF") == 0) return "OFF";
-  if (word == "solid" && head.find("facet") != std::string::npos && head.find('\0') == std::string::npos) return "STL";
+  if (word.size() <= 8 && word.size() >= 3 && word.compare(word.size() - 3, 3, "OFF") == 0)
+    return "OFF";
+  if (word == "solid" && head.find("facet") != std::string::npos && head.find('\0') == std::string::npos)
+    return "STL";
   return "";
 }
 
@@ -147,15 +173,18 @@ bool has_extension(const char *path, const char *extension) {
 
 bool is_surface(const std::string &kind) {
   for (const char *surface : {"VTKFile PolyData", "VTKFile PPolyData", "vtk POLYDATA", "PLY", "STL", "OFF"}) {
-    if (kind == surface) return true;
+    if (kind == surface)
+      return true;
   }
   return false;
 }
 
 bool parse_number(const char *first, const char *last, double *value) {
-  if (first != last && *first == '+') ++first;
+  if (first != last && *first == '+')
+    ++first;
   const auto [end, error] = std::from_chars(first, last, *value);
-  if (end != last || first == last) return false;
+  if (end != last || first == last)
+    return false;
   // Beyond double's range: tiny is zero, huge is an infinity that is refused later.
   if (error == std::errc::result_out_of_range) {
     const std::string text(first, last);
@@ -186,7 +215,8 @@ void refuse(const char *path, const std::string &kind, const char *wanted, const
   const size_t space = kind.find(' ');
   const bool vtk = space != std::string::npos;
   const bool fillable = std::strcmp(wanted, "a volume mesh") == 0 && is_surface(kind);
-  fail(TETCAST_ERROR_DATA, "%s: holds %s%s, not %s%s", path, vtk ? kind.c_str() + space + 1 : kind.c_str(), vtk ? "" : " data", wanted,
+  fail(TETCAST_ERROR_DATA, "%s: holds %s%s, not %s%s", path, vtk ? kind.c_str() + space + 1 : kind.c_str(),
+       vtk ? "" : " data", wanted,
        fillable ? ": a surface, which tetcast mesh fills with tetrahedra if it is closed" : "");
 }
 
@@ -194,28 +224,33 @@ void refuse(const char *path, const std::string &kind, const char *wanted, const
 
 template <typename T> static int64_t find_nonfinite(const T *values, int64_t count) {
   int64_t i = 0;
-  while (i < count && std::isfinite(values[i])) ++i;
+  while (i < count && std::isfinite(values[i]))
+    ++i;
   return i < count ? i : -1;
 }
 
 int64_t first_nonfinite(vtkDataArray *data) {
   const int64_t count = data->GetNumberOfComponents() * static_cast<int64_t>(data->GetNumberOfTuples());
-  if (auto *floats = vtkAOSDataArrayTemplate<float>::FastDownCast(data)) return find_nonfinite(floats->GetPointer(0), count);
-  if (auto *doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(data)) return find_nonfinite(doubles->GetPointer(0), count);
+  if (auto *floats = vtkAOSDataArrayTemplate<float>::FastDownCast(data))
+    return find_nonfinite(floats->GetPointer(0), count);
+  if (auto *doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(data))
+    return find_nonfinite(doubles->GetPointer(0), count);
   return -1; // integers
 }
 
 void check_dimension(const char *path, vtkPoints *points) {
   const int components = points->GetData()->GetNumberOfComponents();
-  if (components != 3) fail(TETCAST_ERROR_DATA, "%s: points have %d components, not 3", path, components);
+  if (components != 3)
+    fail(TETCAST_ERROR_DATA, "%s: points have %d components, not 3", path, components);
 }
 
 void check_points(const char *path, vtkPoints *points) {
   check_dimension(path, points);
   const int64_t i = first_nonfinite(points->GetData());
-  if (i < 0) return;
+  if (i < 0)
+    return;
   fail(TETCAST_ERROR_DATA, "%s: point %lld: coordinate %c is %g", path, static_cast<long long>(i / 3), "xyz"[i % 3],
-       points->GetData()->GetComponent(i / 3, static_cast<int>(i % 3)));
+       points -> GetData() -> GetComponent(i / 3, static_cast<int>(i % 3)));
 }
 
 template <typename ArrayType>
@@ -223,10 +258,12 @@ static void check_cells_of(const char *path, ArrayType *offsets, ArrayType *indi
                            const char *what) {
   const int64_t count = static_cast<int64_t>(offsets->GetNumberOfValues()) - 1;
   const int64_t size = indices->GetNumberOfValues();
-  if (count < 0) return;
+  if (count < 0)
+    return;
   const auto *offset = offsets->GetPointer(0);
   const auto *index = indices->GetPointer(0);
-  if (offset[0] != 0) fail(TETCAST_ERROR_DATA, "%s: the first offset into the %ss' points is not 0", path, what);
+  if (offset[0] != 0)
+    fail(TETCAST_ERROR_DATA, "%s: the first offset into the %ss' points is not 0", path, what);
   for (int64_t i = 0; i < count; ++i) {
     const long long cell = i;
     if (offset[i + 1] < offset[i] || offset[i + 1] > size) {
@@ -258,15 +295,21 @@ const char *type_name(const vtkDataArray *array) {
                                              {"uint8", "uint16", "uint32", "uint64"}};
   int row = 0;
   switch (array->GetDataType()) {
-  case VTK_FLOAT: return "float32";
-  case VTK_DOUBLE: return "float64";
-  case VTK_BIT: return "bit";
+  case VTK_FLOAT:
+    return "float32";
+  case VTK_DOUBLE:
+    return "float64";
+  case VTK_BIT:
+    return "bit";
   case VTK_UNSIGNED_CHAR:
   case VTK_UNSIGNED_SHORT:
   case VTK_UNSIGNED_INT:
   case VTK_UNSIGNED_LONG:
-  case VTK_UNSIGNED_LONG_LONG: row = 1; break;
-  default: break;
+  case VTK_UNSIGNED_LONG_LONG:
+    row = 1;
+    break;
+  default:
+    break;
   }
   const int size = array->GetDataTypeSize();
   return integers[row][size == 1 ? 0 : size == 2 ? 1 : size == 4 ? 2 : 3];
@@ -280,7 +323,8 @@ TetcastType type_of(const vtkDataArray *array) {
                {"uint32", TETCAST_TYPE_UINT32},   {"int64", TETCAST_TYPE_INT64},     {"uint64", TETCAST_TYPE_UINT64}};
   const char *name = type_name(array);
   for (const auto &entry : types) {
-    if (std::strcmp(name, entry.name) == 0 && array->HasStandardMemoryLayout()) return entry.type;
+    if (std::strcmp(name, entry.name) == 0 && array->HasStandardMemoryLayout())
+      return entry.type;
   }
   return TETCAST_TYPE_NONE;
 }

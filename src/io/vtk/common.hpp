@@ -87,7 +87,8 @@ private:
 template <typename Read> auto captured(TetcastContext *context, const char *path, Read &&read) {
   const Capture capture;
   auto result = read();
-  if (capture.failed()) fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: %s", path, capture.error().c_str());
+  if (capture.failed())
+    fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: %s", path, capture.error().c_str());
   if (!capture.warning().empty()) {
     tetcast_context_message(context, TETCAST_SEVERITY_WARNING, "%s: %s", path, capture.warning().c_str());
   }
@@ -103,15 +104,16 @@ int64_t file_size(const char *path); // 0 if there is no such file
 // "" …
 std::string file_kind(const std::string &head);
 bool is_surface(const std::string &kind);
-bool parse_number(const char *first, const char *last, double *value); // decimal, the same in every locale; false: is none
-double number_of(const std::string &text); // decimal, the same in every locale; NaN: is none
+bool parse_number(const char *first, const char *last,
+                  double *value);                            // decimal, the same in every locale; false: is none
+double number_of(const std::string &text);                   // decimal, the same in every locale; NaN: is none
 bool has_extension(const char *path, const char *extension); // ".vtu", in any case of letters
 
 // Refuses a kind of content that no reader of this call takes.
 [[noreturn]] void refuse(const char *path, const std::string &kind, const char *wanted, const char *extensions);
 
 // Each fails with the first offence and its place.
-int64_t first_nonfinite(vtkDataArray *data); // value, of all components; -1: there is none
+int64_t first_nonfinite(vtkDataArray *data);               // value, of all components; -1: there is none
 void check_dimension(const char *path, vtkPoints *points); // three coordinates each
 void check_points(const char *path, vtkPoints *points);    // and finite ones
 void check_cells(const char *path, vtkCellArray *cells, int64_t point_count, const char *what);

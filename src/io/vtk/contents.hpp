@@ -32,7 +32,7 @@ struct Contents {
   std::vector<std::string> blocks; // names of all there are
   std::vector<double> times;       // of all steps, ascending
   int64_t step = 0;
-  int64_t surfaces = 0; // parts that were left out as they are known to be no volume
+  int64_t surfaces = 0;            // parts that were left out as they are known to be no volume
   std::vector<UnreadArray> unread; // arrays that there are in the file and not in the pieces
 };
 

@@ -31,7 +31,8 @@ static void take_arrays(vtkDataSetAttributes *attributes, TetcastAssociation ass
                         TetcastDataset *dataset) {
   for (int i = 0; i < attributes->GetNumberOfArrays(); ++i) {
     vtkDataArray *data = attributes->GetArray(i); // null for strings
-    if (!data || data->GetNumberOfComponents() < 1) continue;
+    if (!data || data->GetNumberOfComponents() < 1)
+      continue;
     const std::string name = data->GetName() ? data->GetName() : "";
     if (is_ghost_array(name) || !has_length("", {association, name}, data, count, &dataset->unread))
       continue;
@@ -111,21 +112,26 @@ static Contents read_pieces_of(const Reading &reading) {
   const char *path = reading.path.c_str(), *block = reading.desc->block;
   Contents contents;
   read_contents(reading, &contents);
-  if (contents.times.empty()) choose_step(reading.path, *reading.desc, {}); // fails unless it is the only one
+  if (contents.times.empty())
+    choose_step(reading.path, *reading.desc, {}); // fails unless it is the only one
   if (block && (contents.pieces.empty() || contents.blocks.empty())) {
     std::string list;
-    for (const std::string &name : contents.blocks) list += (list.empty() ? "there are: " : ", ") + name;
-    fail(TETCAST_ERROR_ARGUMENT, "%s: has no block '%s' with a volume; %s", path, block, list.empty() ? "it is not of blocks" : list.c_str());
+    for (const std::string &name : contents.blocks)
+      list += (list.empty() ? "there are: " : ", ") + name;
+    fail(TETCAST_ERROR_ARGUMENT, "%s: has no block '%s' with a volume; %s", path, block,
+         list.empty() ? "it is not of blocks" : list.c_str());
   }
   if (contents.pieces.empty()) {
-    fail(TETCAST_ERROR_DATA, "%s: %s", path, contents.surfaces > 0 ? "holds no volume, only surfaces or flat grids" : "holds no cells");
+    fail(TETCAST_ERROR_DATA, "%s: %s", path,
+         contents.surfaces > 0 ? "holds no volume, only surfaces or flat grids" : "holds no cells");
   }
   return contents;
 }
 
 static bool has_arrays(vtkDataSetAttributes *attributes) {
   for (int i = 0; i < attributes->GetNumberOfArrays(); ++i) {
-    if (attributes->GetArray(i) && !is_ghost_array(attributes->GetArrayName(i) ? attributes->GetArrayName(i) : "")) return true;
+    if (attributes->GetArray(i) && !is_ghost_array(attributes->GetArrayName(i) ? attributes->GetArrayName(i) : ""))
+      return true;
   }
   return false;
 }
@@ -134,7 +140,8 @@ static bool has_arrays(vtkDataSetAttributes *attributes) {
 static void number_blocks(std::vector<Piece> *pieces) {
   bool several = false;
   for (const Piece &piece : *pieces) {
-    if (piece.block < 0 || has_arrays(piece.grid->GetPointData()) || has_arrays(piece.grid->GetCellData())) return;
+    if (piece.block < 0 || has_arrays(piece.grid->GetPointData()) || has_arrays(piece.grid->GetCellData()))
+      return;
     several = several || piece.block != pieces->front().block;
   }
   for (size_t i = 0; several && i < pieces->size(); ++i) {
@@ -156,7 +163,8 @@ static void warn_of_cut(const TetcastDataset *dataset) {
               {info.folded, "are far from convex or tangled: their tetrahedra overlap"},
               {info.open, "are polyhedra whose faces don't close"}};
   for (const auto &row : rows) {
-    if (row.count == 0) continue;
+    if (row.count == 0)
+      continue;
     tetcast_context_message(dataset->context, TETCAST_SEVERITY_WARNING, "%s: %lld cells %s", dataset->path.c_str(),
                             static_cast<long long>(row.count), row.text);
   }
@@ -164,13 +172,17 @@ static void warn_of_cut(const TetcastDataset *dataset) {
 
 static void warn_of_nonfinite(const TetcastDataset *dataset) {
   const TetcastDatasetPieces &pieces = dataset->pieces;
-  if (pieces.nonfinite_points == 0) return;
+  if (pieces.nonfinite_points == 0)
+    return;
   tetcast_context_message(dataset->context, TETCAST_SEVERITY_WARNING,
-                          "%s: %lld points have coordinates that are NaN or infinite: they are left out, and so are %lld cells that use them",
-                          dataset->path.c_str(), static_cast<long long>(pieces.nonfinite_points), static_cast<long long>(pieces.nonfinite_cells));
+                          "%s: %lld points have coordinates that are NaN or infinite: they are left out, and so are "
+                          "%lld cells that use them",
+                          dataset->path.c_str(), static_cast<long long>(pieces.nonfinite_points),
+                          static_cast<long long>(pieces.nonfinite_cells));
 }
 
-static void read_dataset(TetcastContext *context, const char *path, const TetcastDatasetDesc &desc, TetcastDataset *dataset) {
+static void read_dataset(TetcastContext *context, const char *path, const TetcastDatasetDesc &desc,
+                         TetcastDataset *dataset) {
   const Reading reading = {context, &desc, path, "", 0};
   Contents contents = read_pieces_of(reading);
   dataset->context = context;
@@ -188,7 +200,8 @@ static void read_dataset(TetcastContext *context, const char *path, const Tetcas
   if (cells == 0 && pieces.nonfinite_cells > 0) {
     fail(TETCAST_ERROR_DATA, "%s: holds no cells without coordinates that are NaN or infinite", path);
   }
-  if (cells == 0) fail(TETCAST_ERROR_DATA, "%s: holds no cells%s", path, pieces.ghost_cells > 0 ? " but ghosts" : "");
+  if (cells == 0)
+    fail(TETCAST_ERROR_DATA, "%s: holds no cells%s", path, pieces.ghost_cells > 0 ? " but ghosts" : "");
   warn_of_nonfinite(dataset);
   dataset->point_count = points + pieces.ghost_points + pieces.nonfinite_points + pieces.merged_points;
   dataset->cell_count = cells + pieces.ghost_cells + pieces.nonfinite_cells;
@@ -222,23 +235,28 @@ TetcastDatasetDesc tetcast_dataset_desc_default(void) {
   return desc;
 }
 
-TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, const TetcastDatasetDesc *desc, TetcastDataset **dataset) {
+TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, const TetcastDatasetDesc *desc,
+                                   TetcastDataset **dataset) {
   const FloatingPoint guard;
-  if (dataset) *dataset = nullptr;
+  if (dataset)
+    *dataset = nullptr;
   if (!context || !path || !dataset) {
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
                                  "tetcast_dataset_read: context, path and dataset must not be NULL");
   }
   const TetcastDatasetDesc all = desc ? *desc : tetcast_dataset_desc_default();
   if (all.cookie != desc_cookie)
-    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
-                                 "tetcast_dataset_read: the description was not made by tetcast_dataset_desc_default()");
+    return tetcast_context_error(
+        context, TETCAST_ERROR_ARGUMENT,
+        "tetcast_dataset_read: the description was not made by tetcast_dataset_desc_default()");
   if (std::isinf(all.time) || !std::isfinite(all.merge_tolerance)) {
-    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "tetcast_dataset_read: time %g or merge_tolerance %g is not a finite number",
-                                 all.time, all.merge_tolerance);
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
+                                 "tetcast_dataset_read: time %g or merge_tolerance %g is not a finite number", all.time,
+                                 all.merge_tolerance);
   }
   if (all.subdivision < 0 || all.subdivision > TETCAST_MAX_SUBDIVISION) {
-    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "tetcast_dataset_read: subdivision %d is not from 0 to %d", all.subdivision,
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
+                                 "tetcast_dataset_read: subdivision %d is not from 0 to %d", all.subdivision,
                                  TETCAST_MAX_SUBDIVISION);
   }
   return fence(context, path, [&] {
@@ -249,21 +267,26 @@ TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, co
 }
 
 void tetcast_dataset_destroy(TetcastDataset **dataset) {
-  if (!dataset) return;
+  if (!dataset)
+    return;
   delete *dataset;
   *dataset = nullptr;
 }
 
 bool tetcast_dataset_cell_type(const TetcastDataset *dataset, int i, const char **name, int64_t *count) {
-  if (!dataset || i < 0 || static_cast<size_t>(i) >= dataset->tetrahedra.types.size()) return false;
+  if (!dataset || i < 0 || static_cast<size_t>(i) >= dataset->tetrahedra.types.size())
+    return false;
   const auto &type = dataset->tetrahedra.types[static_cast<size_t>(i)];
-  if (name) *name = type.first;
-  if (count) *count = type.second;
+  if (name)
+    *name = type.first;
+  if (count)
+    *count = type.second;
   return true;
 }
 
 bool tetcast_dataset_array(const TetcastDataset *dataset, int i, TetcastDatasetArray *array) {
-  if (!dataset || !array || i < 0 || static_cast<size_t>(i) >= dataset->arrays.size()) return false;
+  if (!dataset || !array || i < 0 || static_cast<size_t>(i) >= dataset->arrays.size())
+    return false;
   const Array &source = dataset->arrays[static_cast<size_t>(i)];
   array->name = source.name.c_str();
   array->selector = source.selector.c_str();
@@ -280,29 +303,42 @@ const char *tetcast_dataset_unread(const TetcastDataset *dataset, int i) {
              : nullptr;
 }
 
-int64_t tetcast_dataset_point_count(const TetcastDataset *dataset) { return dataset ? dataset->point_count : 0; }
-int64_t tetcast_dataset_cell_count(const TetcastDataset *dataset) { return dataset ? dataset->cell_count : 0; }
+int64_t tetcast_dataset_point_count(const TetcastDataset *dataset) {
+  return dataset ? dataset->point_count : 0;
+}
+int64_t tetcast_dataset_cell_count(const TetcastDataset *dataset) {
+  return dataset ? dataset->cell_count : 0;
+}
 
-TetcastDatasetPieces tetcast_dataset_pieces(const TetcastDataset *dataset) { return dataset ? dataset->pieces : TetcastDatasetPieces(); }
+TetcastDatasetPieces tetcast_dataset_pieces(const TetcastDataset *dataset) {
+  return dataset ? dataset->pieces : TetcastDatasetPieces();
+}
 
 const char *tetcast_dataset_block(const TetcastDataset *dataset, int i) {
-  return dataset && i >= 0 && static_cast<size_t>(i) < dataset->blocks.size() ? dataset->blocks[static_cast<size_t>(i)].c_str() : nullptr;
+  return dataset && i >= 0 && static_cast<size_t>(i) < dataset->blocks.size()
+             ? dataset->blocks[static_cast<size_t>(i)].c_str()
+             : nullptr;
 }
 
 bool tetcast_dataset_time(const TetcastDataset *dataset, int64_t i, double *time) {
-  if (!dataset || i < 0 || static_cast<size_t>(i) >= dataset->times.size()) return false;
-  if (time) *time = dataset->times[static_cast<size_t>(i)];
+  if (!dataset || i < 0 || static_cast<size_t>(i) >= dataset->times.size())
+    return false;
+  if (time)
+    *time = dataset->times[static_cast<size_t>(i)];
   return true;
 }
 
-int64_t tetcast_dataset_step(const TetcastDataset *dataset) { return dataset ? dataset->step : 0; }
+int64_t tetcast_dataset_step(const TetcastDataset *dataset) {
+  return dataset ? dataset->step : 0;
+}
 
 TetcastCutInfo tetcast_dataset_cut(const TetcastDataset *dataset) {
   return dataset ? dataset->tetrahedra.info : TetcastCutInfo();
 }
 
 TetcastStatus tetcast_dataset_mesh(const TetcastDataset *dataset, TetcastMesh **mesh) {
-  if (mesh) *mesh = nullptr;
+  if (mesh)
+    *mesh = nullptr;
   if (!dataset || !mesh) {
     return tetcast_context_error(dataset ? dataset->context : nullptr, TETCAST_ERROR_ARGUMENT,
                                  "tetcast_dataset_mesh: dataset and mesh must not be NULL");

@@ -40,12 +40,12 @@ struct TetcastDataset {
   int64_t step = 0;
   vtkSmartPointer<vtkDataArray> points; // float32 or float64
   tcv::Tetrahedra tetrahedra;
-  std::vector<tcv::Array> arrays;          // point arrays first
-  std::vector<tcv::UnreadArray> unread;    // others that there are in the file
-  vtkSmartPointer<vtkCellArray> corners;   // of the file's cells, and
+  std::vector<tcv::Array> arrays;              // point arrays first
+  std::vector<tcv::UnreadArray> unread;        // others that there are in the file
+  vtkSmartPointer<vtkCellArray> corners;       // of the file's cells, and
   vtkSmartPointer<vtkUnsignedCharArray> types; // theirs; null unless cell arrays are to be averaged
-  mutable std::mutex mutex;                // guards the next
-  mutable std::set<std::string> selectors; // that were handed out
+  mutable std::mutex mutex;                    // guards the next
+  mutable std::set<std::string> selectors;     // that were handed out
 };
 
 #endif

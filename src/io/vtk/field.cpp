@@ -188,9 +188,11 @@ static double length_of(const double *values, int count) {
     sum += values[i] * values[i];
     largest = std::max(largest, std::fabs(values[i]));
   }
-  if ((sum > 1e-280 && sum < 1e280) || largest == 0 || !std::isfinite(largest)) return std::sqrt(sum);
+  if ((sum > 1e-280 && sum < 1e280) || largest == 0 || !std::isfinite(largest))
+    return std::sqrt(sum);
   sum = 0; // the squares over- or underflow
-  for (int i = 0; i < count; ++i) sum += (values[i] / largest) * (values[i] / largest);
+  for (int i = 0; i < count; ++i)
+    sum += (values[i] / largest) * (values[i] / largest);
   return largest * std::sqrt(sum);
 }
 
@@ -214,41 +216,50 @@ static std::vector<double> computed(const Selection &selection) {
   return values;
 }
 
-// What the cells that use each point have on average: the selected scalar of a cell array, as one of points. Those that no cell uses get
-// the value of another: they are not drawn, and no value is missing.
+// What the cells that use each point have on average: the selected scalar of a cell array, as one of points. Those that
+// no cell uses get the value of another: they are not drawn, and no value is missing.
 static std::vector<double> averaged(const TetcastDataset *dataset, const Selection &selection) {
   vtkDataArray *data = selection.array->data;
   const bool whole = selection.component == MAGNITUDE;
   const int first = whole ? 0 : selection.component, components = whole ? data->GetNumberOfComponents() : 1;
   const auto width = static_cast<size_t>(components);
-  const auto points = static_cast<size_t>(dataset->points->GetNumberOfTuples() - dataset->tetrahedra.info.added_vertices);
+  const auto points =
+      static_cast<size_t>(dataset->points->GetNumberOfTuples() - dataset->tetrahedra.info.added_vertices);
   std::vector<double> sums(points * width), tuple(width);
   std::vector<int32_t> counts(points);
   std::vector<int64_t> last(points, -1); // the cell that was there last: some have a point twice
   for (vtkIdType cell = 0; cell < data->GetNumberOfTuples(); ++cell) {
-    if (!is_volume(dataset->types->GetValue(cell))) continue;
-    for (int k = 0; k < components; ++k) tuple[static_cast<size_t>(k)] = data->GetComponent(cell, first + k);
+    if (!is_volume(dataset->types->GetValue(cell)))
+      continue;
+    for (int k = 0; k < components; ++k)
+      tuple[static_cast<size_t>(k)] = data->GetComponent(cell, first + k);
     const bool finite = std::all_of(tuple.begin(), tuple.end(), [](double value) { return std::isfinite(value); });
     vtkIdType size;
     const vtkIdType *corners;
     dataset->corners->GetCellAtId(cell, size, corners);
     for (vtkIdType j = 0; j < size; ++j) {
       const auto point = static_cast<size_t>(corners[j]);
-      if (last[point] == cell) continue;
+      if (last[point] == cell)
+        continue;
       last[point] = cell;
-      if (!finite) continue;
+      if (!finite)
+        continue;
       ++counts[point];
-      for (size_t k = 0; k < width; ++k) sums[point * width + k] += tuple[k];
+      for (size_t k = 0; k < width; ++k)
+        sums[point * width + k] += tuple[k];
     }
   }
   std::vector<double> values(points);
   double other = 0;
   for (size_t i = points; i-- > 0;) {
-    for (size_t k = 0; k < width; ++k) tuple[k] = sums[i * width + k] / counts[i]; // NaN where there are none
+    for (size_t k = 0; k < width; ++k)
+      tuple[k] = sums[i * width + k] / counts[i]; // NaN where there are none
     values[i] = whole ? length_of(tuple.data(), components) : tuple[0];
-    if (counts[i] > 0) other = values[i];
+    if (counts[i] > 0)
+      other = values[i];
   }
-  for (size_t i = 0; i < points; ++i) values[i] = last[i] < 0 ? other : values[i];
+  for (size_t i = 0; i < points; ++i)
+    values[i] = last[i] < 0 ? other : values[i];
   return values;
 }
 
@@ -310,7 +321,8 @@ static TetcastStatus make_field(const TetcastDataset *dataset, const Selection &
   if (extend || (desc.association == TETCAST_CELL && dataset->tetrahedra.connectivity == nullptr)) {
     made = extend ? extended(desc.values, dataset->tetrahedra) : gathered(desc.values, dataset->tetrahedra.source);
     desc.values.data = made.data();
-    desc.values.count = extend ? desc.values.count + dataset->tetrahedra.info.added_vertices : dataset->tetrahedra.view.count;
+    desc.values.count =
+        extend ? desc.values.count + dataset->tetrahedra.info.added_vertices : dataset->tetrahedra.view.count;
     desc.values.stride = 0;
     desc.ownership = TETCAST_COPY;
   }
@@ -327,8 +339,10 @@ static const char *kept_name(const TetcastDataset *dataset, const Selection &sel
 
 TetcastStatus tetcast_dataset_field(const TetcastDataset *dataset, const char *selector, TetcastField **field,
                                     const char **name) {
-  if (field) *field = nullptr;
-  if (name) *name = nullptr;
+  if (field)
+    *field = nullptr;
+  if (name)
+    *name = nullptr;
   if (!dataset || !field) {
     return tetcast_context_error(dataset ? dataset->context : nullptr, TETCAST_ERROR_ARGUMENT,
                                  "tetcast_dataset_field: dataset and field must not be NULL");
@@ -338,7 +352,8 @@ TetcastStatus tetcast_dataset_field(const TetcastDataset *dataset, const char *s
     const Selection selection = select(dataset, selector);
     const char *kept = kept_name(dataset, selection);
     status = make_field(dataset, selection, field);
-    if (name && status == TETCAST_OK) *name = kept;
+    if (name && status == TETCAST_OK)
+      *name = kept;
   });
   return thrown ? thrown : status;
 }

@@ -10,7 +10,8 @@
 
 namespace {
 
-// Content tells (file_kind); the extensions only where content is silent. A row without a name is another kind of the format above it.
+// Content tells (file_kind); the extensions only where content is silent. A row without a name is another kind of the
+// format above it.
 const struct {
   const char *name, *extensions, *kind;
   void (*read)(const tcv::Reading &reading, tcv::Contents *contents);
@@ -46,7 +47,8 @@ bool one_of(const char *path, const char *extensions) {
   const std::string all = extensions;
   for (size_t at = 0; at < all.size();) {
     const size_t end = std::min(all.find(' ', at), all.size());
-    if (tcv::has_extension(path, all.substr(at, end - at).c_str())) return true;
+    if (tcv::has_extension(path, all.substr(at, end - at).c_str()))
+      return true;
     at = end + 1;
   }
   return false;
@@ -54,11 +56,14 @@ bool one_of(const char *path, const char *extensions) {
 
 // Whether a file of this kind is all of one block: the other kinds may hold blocks within.
 bool is_one_block(const std::string &kind) {
-  const bool xml = kind.compare(0, 8, "VTKFile ") == 0 && kind != "VTKFile vtkMultiBlockDataSet" && kind != "VTKFile Collection";
+  const bool xml =
+      kind.compare(0, 8, "VTKFile ") == 0 && kind != "VTKFile vtkMultiBlockDataSet" && kind != "VTKFile Collection";
   return xml || kind.compare(0, 4, "vtk ") == 0;
 }
 
-bool available(const char *plugin) { return !plugin || tcv::plugin_exists(plugin); }
+bool available(const char *plugin) {
+  return !plugin || tcv::plugin_exists(plugin);
+}
 
 } // namespace
 
@@ -69,15 +74,18 @@ void read_contents(const Reading &reading, Contents *contents) {
   const std::string kind = has_extension(path, ".foam") ? "OpenFOAM" : file_kind(file_head(path)); // those are empty
   std::string extensions;
   for (const auto &format : formats) {
-    if (format.name) extensions += (extensions.empty() ? "" : " ") + std::string(format.extensions);
-    if (kind.empty() ? !one_of(path, format.extensions) : kind != format.kind) continue;
+    if (format.name)
+      extensions += (extensions.empty() ? "" : " ") + std::string(format.extensions);
+    if (kind.empty() ? !one_of(path, format.extensions) : kind != format.kind)
+      continue;
     return format.read(reading, contents);
   }
   refuse(path, kind, "a volume mesh", extensions.c_str());
 }
 
 void read_part(const Reading &of, const std::string &path, const std::string &block, Contents *contents) {
-  if (of.depth >= 8) fail(TETCAST_ERROR_DATA, "%s: is listed by a file that lists a file …, eight times over", path.c_str());
+  if (of.depth >= 8)
+    fail(TETCAST_ERROR_DATA, "%s: is listed by a file that lists a file …, eight times over", path.c_str());
   try {
     const std::string kind = file_kind(file_head(path.c_str()));
     const bool wanted = block_wanted(block, of.desc->block);
@@ -100,9 +108,12 @@ int64_t choose_step(const std::string &path, const TetcastDatasetDesc &desc, con
 
 bool tetcast_dataset_format(int i, const char **name, const char **extensions) {
   for (const auto &format : formats) {
-    if (!format.name || !available(format.plugin) || i-- != 0) continue;
-    if (name) *name = format.name;
-    if (extensions) *extensions = format.extensions;
+    if (!format.name || !available(format.plugin) || i-- != 0)
+      continue;
+    if (name)
+      *name = format.name;
+    if (extensions)
+      *extensions = format.extensions;
     return true;
   }
   return false;

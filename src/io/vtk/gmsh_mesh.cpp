@@ -25,8 +25,8 @@
 
 namespace {
 
-// Gmsh numbers the middles of edges by their ends, in rising order, and VTK goes round. Null: as Gmsh has them. What Gmsh's 14-node
-// pyramid has in the middle of its base VTK has in one of 19, of which the rest is not used.
+// Gmsh numbers the middles of edges by their ends, in rising order, and VTK goes round. Null: as Gmsh has them. What
+// Gmsh's 14-node pyramid has in the middle of its base VTK has in one of 19, of which the rest is not used.
 const short tetrahedron_10[] = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
 const short hexahedron_27[] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  11, 13, 9,  16, 18,
                                19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26};
@@ -113,7 +113,8 @@ const std::vector<ElementType> &all_types() {
 
 const ElementType *find_type(int64_t id) {
   for (const ElementType &type : all_types()) {
-    if (type.id == id) return &type;
+    if (type.id == id)
+      return &type;
   }
   return nullptr;
 }
@@ -129,7 +130,8 @@ struct Section {
 
 class Reader {
 public:
-  Reader(const tcv::Reading &reading, const std::string &bytes) : reading_(reading), in_(reading.path.c_str(), bytes), bytes_(bytes.size()) {}
+  Reader(const tcv::Reading &reading, const std::string &bytes)
+      : reading_(reading), in_(reading.path.c_str(), bytes), bytes_(bytes.size()) {}
   void read(tcv::Contents *contents);
 
 private:
@@ -185,27 +187,34 @@ void Reader::read_format() {
              static_cast<long long>(size));
   }
   in_.line();
-  if (!binary) return;
+  if (!binary)
+    return;
   in_.begin_bytes();
   const int64_t one = in_.integer("the number 1");
-  if (one == 1) return;
-  if (one != 0x01000000) in_.fail("the number 1 is to come, in one order of bytes or the other");
+  if (one == 1)
+    return;
+  if (one != 0x01000000)
+    in_.fail("the number 1 is to come, in one order of bytes or the other");
   in_.swap_bytes();
 }
 
 // Which physical groups the points, curves, surfaces and volumes are in; or the parts of these that partitions have.
 void Reader::read_entities(bool parts) {
-  if (old()) in_.fail("version %g has no section of entities", version_);
+  if (old())
+    in_.fail("version %g has no section of entities", version_);
   if (parts) {
     in_.size("the number of partitions");
     const int64_t ghosts = in_.count(in_.size("the number of ghosts"), 8, 4, "ghosts");
-    for (int64_t i = 0; i < 2 * ghosts; ++i) in_.integer("a ghost's number");
+    for (int64_t i = 0; i < 2 * ghosts; ++i)
+      in_.integer("a ghost's number");
   }
   int64_t counts[4];
-  for (int64_t &count : counts) count = in_.count(in_.size("a number of entities"), 32, 8, "entities");
+  for (int64_t &count : counts)
+    count = in_.count(in_.size("a number of entities"), 32, 8, "entities");
   const auto skip_list = [&](const char *what) {
     const int64_t count = in_.count(in_.size("a count"), 4, 2, what);
-    for (int64_t i = 0; i < count; ++i) in_.integer("the number of an entity");
+    for (int64_t i = 0; i < count; ++i)
+      in_.integer("the number of an entity");
   };
   for (int dimension = 0; dimension < 4; ++dimension) {
     for (int64_t i = 0; i < counts[dimension]; ++i) {
@@ -215,24 +224,30 @@ void Reader::read_entities(bool parts) {
         in_.integer("the number of an entity");
         skip_list("partitions");
       }
-      for (int k = 0; k < (dimension ? 6 : 3); ++k) in_.number("a coordinate");
+      for (int k = 0; k < (dimension ? 6 : 3); ++k)
+        in_.number("a coordinate");
       const int64_t groups = in_.count(in_.size("a count"), 4, 2, "groups");
       for (int64_t k = 0; k < groups; ++k) {
         const int64_t group = in_.integer("the number of a group");
-        if (k == 0) groups_[{dimension, tag}] = group < 0 ? -group : group; // negative: turned round
+        if (k == 0)
+          groups_[{dimension, tag}] = group < 0 ? -group : group; // negative: turned round
       }
-      if (dimension > 0) skip_list("bounding entities");
+      if (dimension > 0)
+        skip_list("bounding entities");
     }
   }
 }
 
 void Reader::read_node(int64_t i, int extra) {
-  for (int k = 0; k < 3; ++k) positions_->SetValue(3 * i + k, in_.number("a coordinate"));
-  for (int k = 0; k < extra; ++k) in_.number("a parameter");
+  for (int k = 0; k < 3; ++k)
+    positions_->SetValue(3 * i + k, in_.number("a coordinate"));
+  for (int k = 0; k < extra; ++k)
+    in_.number("a parameter");
 }
 
 void Reader::read_nodes() {
-  if (positions_->GetNumberOfTuples() > 0) in_.fail("there is a second section $Nodes");
+  if (positions_->GetNumberOfTuples() > 0)
+    in_.fail("there is a second section $Nodes");
   positions_->SetNumberOfComponents(3);
   int64_t count = 0;
   if (old()) {
@@ -255,21 +270,29 @@ void Reader::read_nodes() {
       in_.integer("the number of an entity");
       const bool parametric = in_.integer("0 or 1") != 0;
       const int64_t here = in_.count(in_.size("a number of nodes"), 32, 8, "nodes");
-      if (dimension < 0 || dimension > 3) in_.fail("a dimension of %lld", static_cast<long long>(dimension));
-      if (here > count - first) in_.fail("there are more nodes than the %lld that were claimed", static_cast<long long>(count));
-      for (int64_t i = 0; i < here; ++i) nodes_.add(in_.size("the number of a node"), first + i);
-      for (int64_t i = 0; i < here; ++i) read_node(first + i, parametric ? static_cast<int>(dimension) : 0);
+      if (dimension < 0 || dimension > 3)
+        in_.fail("a dimension of %lld", static_cast<long long>(dimension));
+      if (here > count - first)
+        in_.fail("there are more nodes than the %lld that were claimed", static_cast<long long>(count));
+      for (int64_t i = 0; i < here; ++i)
+        nodes_.add(in_.size("the number of a node"), first + i);
+      for (int64_t i = 0; i < here; ++i)
+        read_node(first + i, parametric ? static_cast<int>(dimension) : 0);
       first += here;
     }
-    if (first != count) in_.fail("there are %lld nodes of the %lld that were claimed", static_cast<long long>(first), static_cast<long long>(count));
+    if (first != count)
+      in_.fail("there are %lld nodes of the %lld that were claimed", static_cast<long long>(first),
+               static_cast<long long>(count));
   }
   int64_t tag;
-  if (nodes_.twice(&tag)) in_.fail("there are two nodes of number %lld", static_cast<long long>(tag));
+  if (nodes_.twice(&tag))
+    in_.fail("there are two nodes of number %lld", static_cast<long long>(tag));
 }
 
 const ElementType &Reader::type_of(int64_t id) const {
   const ElementType *type = find_type(id);
-  if (type) return *type;
+  if (type)
+    return *type;
   tcv::fail(TETCAST_ERROR_UNSUPPORTED,
             "%s: holds elements of Gmsh's type %lld, which are not read: above second order only tetrahedra and "
             "hexahedra with all nodes are",
@@ -283,15 +306,22 @@ void Reader::add_element(const ElementType &type, int64_t tag, int64_t group) {
   for (int64_t &node : list_) {
     const int64_t number = old() ? in_.integer("the number of a node") : in_.size("the number of a node");
     node = nodes_.find(number);
-    if (node < 0) in_.fail("element %lld is of node %lld, which there is not", static_cast<long long>(tag), static_cast<long long>(number));
+    if (node < 0)
+      in_.fail("element %lld is of node %lld, which there is not", static_cast<long long>(tag),
+               static_cast<long long>(number));
   }
-  const auto point = [&](int k) { return static_cast<vtkIdType>(list_[static_cast<size_t>(type.order ? type.order[k] : k)]); };
+  const auto point = [&](int k) {
+    return static_cast<vtkIdType>(list_[static_cast<size_t>(type.order ? type.order[k] : k)]);
+  };
   if (old() && cells > 0 && group != last_group_ && types_->GetValue(cells - 1) == type.type) {
     int same = 0;
-    while (same < type.points && corners_->GetValue(start - type.points + same) == point(same)) ++same;
-    if (same == type.points) return elements_.add(tag, cells - 1);
+    while (same < type.points && corners_->GetValue(start - type.points + same) == point(same))
+      ++same;
+    if (same == type.points)
+      return elements_.add(tag, cells - 1);
   }
-  for (int k = 0; k < type.points; ++k) corners_->InsertNextValue(point(k));
+  for (int k = 0; k < type.points; ++k)
+    corners_->InsertNextValue(point(k));
   ends_->InsertNextValue(start + type.points);
   types_->InsertNextValue(type.type);
   physical_->InsertNextValue(static_cast<int>(group));
@@ -301,8 +331,10 @@ void Reader::add_element(const ElementType &type, int64_t tag, int64_t group) {
 }
 
 void Reader::read_elements() {
-  if (positions_->GetNumberOfTuples() == 0) in_.fail("there are no nodes before the elements");
-  if (types_->GetNumberOfValues() > 0) in_.fail("there is a second section $Elements");
+  if (positions_->GetNumberOfTuples() == 0)
+    in_.fail("there are no nodes before the elements");
+  if (types_->GetNumberOfValues() > 0)
+    in_.fail("there is a second section $Elements");
   ends_->InsertNextValue(0);
   if (old()) {
     const int64_t count = in_.count(in_.text_integer("the number of elements"), 8, 6, "elements");
@@ -312,7 +344,8 @@ void Reader::read_elements() {
       if (in_.binary()) {
         id = in_.integer("the type of elements");
         here = in_.integer("a number of elements");
-        if (here < 0 || here > count - done) in_.fail("a number of %lld elements", static_cast<long long>(here));
+        if (here < 0 || here > count - done)
+          in_.fail("a number of %lld elements", static_cast<long long>(here));
       } else {
         number = in_.integer("the number of an element");
         id = in_.integer("the type of an element");
@@ -320,11 +353,13 @@ void Reader::read_elements() {
       tags = first() ? 2 : in_.count(in_.integer("a number of tags"), 4, 2, "tags");
       const ElementType &type = type_of(id);
       for (int64_t i = 0; i < here; ++i) {
-        if (in_.binary()) number = in_.integer("the number of an element");
+        if (in_.binary())
+          number = in_.integer("the number of an element");
         int64_t group = 0;
         for (int64_t k = 0; k < tags; ++k) {
           const int64_t tag = in_.integer("a tag");
-          if (k == 0) group = tag;
+          if (k == 0)
+            group = tag;
         }
         if (first() && in_.integer("a number of nodes") != type.nodes)
           in_.fail("element %lld has not the %d nodes of its type", static_cast<long long>(number), type.nodes);
@@ -343,22 +378,26 @@ void Reader::read_elements() {
     const ElementType &type = type_of(in_.integer("the type of elements"));
     const int64_t here = in_.count(in_.size("a number of elements"), 16, 4, "elements");
     const auto group = groups_.find({dimension, entity});
-    for (int64_t i = 0; i < here; ++i) add_element(type, in_.size("the number of an element"), group == groups_.end() ? 0 : group->second);
+    for (int64_t i = 0; i < here; ++i)
+      add_element(type, in_.size("the number of an element"), group == groups_.end() ? 0 : group->second);
   }
   if (types_->GetNumberOfValues() != count) {
-    in_.fail("there are %lld elements of the %lld that were claimed", static_cast<long long>(types_->GetNumberOfValues()), static_cast<long long>(count));
+    in_.fail("there are %lld elements of the %lld that were claimed",
+             static_cast<long long>(types_->GetNumberOfValues()), static_cast<long long>(count));
   }
 }
 
 // ── views ──
 
-// Strings, of which the first is the name, numbers, of which the first is the time, and integers: step, components, count. Then the values.
+// Strings, of which the first is the name, numbers, of which the first is the time, and integers: step, components,
+// count. Then the values.
 void Reader::read_section(const std::string &name, Section::Kind kind) {
   Section section = {kind, "", 0, 0, 0, in_};
   const int64_t strings = in_.text_integer("a number of names");
   in_.line();
   for (int64_t i = 0; i < strings; ++i) {
-    if (in_.left() == 0) in_.fail("truncated: a name is to come");
+    if (in_.left() == 0)
+      in_.fail("truncated: a name is to come");
     const std::string text = in_.line();
     const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
     if (i == 0)
@@ -367,16 +406,21 @@ void Reader::read_section(const std::string &name, Section::Kind kind) {
   const int64_t reals = in_.text_integer("a number of times");
   for (int64_t i = 0; i < reals; ++i) {
     const double value = in_.text_number("a time");
-    if (i == 0) section.time = value;
+    if (i == 0)
+      section.time = value;
   }
   const int64_t integers = in_.text_integer("a number of integers");
   for (int64_t i = 0; i < integers; ++i) {
     const int64_t value = in_.text_integer("an integer");
-    if (i == 1) section.components = value;
-    if (i == 2) section.count = value;
+    if (i == 1)
+      section.components = value;
+    if (i == 2)
+      section.count = value;
   }
-  if (!std::isfinite(section.time)) in_.fail("a time of %g", section.time);
-  if (section.components < 1 || section.components > 9) in_.fail("values of %lld components", static_cast<long long>(section.components));
+  if (!std::isfinite(section.time))
+    in_.fail("a time of %g", section.time);
+  if (section.components < 1 || section.components > 9)
+    in_.fail("values of %lld components", static_cast<long long>(section.components));
   const int64_t values = kind == Section::OF_ELEMENTS_NODES ? 1 : section.components;
   in_.count(section.count, 4 + 8 * values, 2 + 2 * values, "values");
   in_.line();
@@ -395,32 +439,41 @@ void Reader::read_corner_values(Section *section, vtkDoubleArray *array) {
     const int64_t cell = elements_.find(section->at.integer("the number of an element"));
     const int64_t nodes = section->at.count(section->at.integer("a number of nodes"), 8 * width, 2 * width, "values");
     values.resize(static_cast<size_t>(nodes * width));
-    for (double &value : values) value = section->at.number("a value");
-    if (cell < 0) section->at.fail("a value is of an element that there is not");
+    for (double &value : values)
+      value = section->at.number("a value");
+    if (cell < 0)
+      section->at.fail("a value is of an element that there is not");
     const vtkIdType points = ends_->GetValue(cell + 1) - ends_->GetValue(cell);
     const auto type = std::find_if(all_types().begin(), all_types().end(), [&](const ElementType &one) {
       return one.type == types_->GetValue(cell) && one.points == points;
     });
-    if (nodes > type->nodes) section->at.fail("an element of %d nodes has values at %lld", type->nodes, static_cast<long long>(nodes));
+    if (nodes > type->nodes)
+      section->at.fail("an element of %d nodes has values at %lld", type->nodes, static_cast<long long>(nodes));
     for (int k = 0; k < std::min(type->nodes, type->points); ++k) {
       const int from = type->order ? type->order[k] : k;
-      if (from >= nodes) continue;
+      if (from >= nodes)
+        continue;
       const vtkIdType point = corners_->GetValue(ends_->GetValue(cell) + k);
-      for (int64_t c = 0; c < width; ++c) array->SetValue(point * width + c, array->GetValue(point * width + c) + values[static_cast<size_t>(from * width + c)]);
+      for (int64_t c = 0; c < width; ++c)
+        array->SetValue(point * width + c,
+                        array->GetValue(point * width + c) + values[static_cast<size_t>(from * width + c)]);
       ++terms[static_cast<size_t>(point)];
     }
   }
   for (int64_t i = 0; i < array->GetNumberOfTuples(); ++i) { // none: 0/0, which is transparent
-    for (int64_t c = 0; c < width; ++c) array->SetValue(i * width + c, array->GetValue(i * width + c) / terms[static_cast<size_t>(i)]);
+    for (int64_t c = 0; c < width; ++c)
+      array->SetValue(i * width + c, array->GetValue(i * width + c) / terms[static_cast<size_t>(i)]);
   }
 }
 
 // NaN where the view has no value.
 vtkSmartPointer<vtkDoubleArray> Reader::values_of(Section *section) {
   const bool of_elements = section->kind == Section::OF_ELEMENTS;
-  const int64_t count = of_elements ? types_->GetNumberOfValues() : positions_->GetNumberOfTuples(), width = section->components;
+  const int64_t count = of_elements ? types_->GetNumberOfValues() : positions_->GetNumberOfTuples(),
+                width = section->components;
   taken_ += 8 * static_cast<uint64_t>(count * width);
-  if (taken_ / 256 > bytes_) section->at.fail("truncated or damaged: there are more views than there is data");
+  if (taken_ / 256 > bytes_)
+    section->at.fail("truncated or damaged: there are more views than there is data");
   auto array = vtkSmartPointer<vtkDoubleArray>::New();
   array->SetName(section->name.c_str());
   array->SetNumberOfComponents(static_cast<int>(width));
@@ -433,8 +486,11 @@ vtkSmartPointer<vtkDoubleArray> Reader::values_of(Section *section) {
   for (int64_t i = 0; i < section->count; ++i) {
     const int64_t tag = section->at.integer(of_elements ? "the number of an element" : "the number of a node");
     const int64_t at = (of_elements ? elements_ : nodes_).find(tag);
-    if (at < 0) section->at.fail("a value is of %s %lld, which there is not", of_elements ? "element" : "node", static_cast<long long>(tag));
-    for (int64_t k = 0; k < width; ++k) array->SetValue(at * width + k, section->at.number("a value"));
+    if (at < 0)
+      section->at.fail("a value is of %s %lld, which there is not", of_elements ? "element" : "node",
+                       static_cast<long long>(tag));
+    for (int64_t k = 0; k < width; ++k)
+      array->SetValue(at * width + k, section->at.number("a value"));
   }
   return array;
 }
@@ -461,17 +517,23 @@ void Reader::try_section(const std::string &name, Section::Kind kind, tcv::Conte
 
 // Of each view the last section that is not after the step; its first, if all are.
 void Reader::add_views(vtkUnstructuredGrid *grid, tcv::Contents *contents) {
-  for (const Section &section : sections_) contents->times.push_back(section.time);
+  for (const Section &section : sections_)
+    contents->times.push_back(section.time);
   std::sort(contents->times.begin(), contents->times.end());
   contents->times.erase(std::unique(contents->times.begin(), contents->times.end()), contents->times.end());
   contents->step = tcv::choose_step(reading_.path, *reading_.desc, contents->times);
   const double now = contents->times.empty() ? 0 : contents->times[static_cast<size_t>(contents->step)];
-  std::stable_sort(sections_.begin(), sections_.end(), [](const Section &a, const Section &b) { return a.time < b.time; });
+  std::stable_sort(sections_.begin(), sections_.end(),
+                   [](const Section &a, const Section &b) { return a.time < b.time; });
   std::vector<Section *> wanted;
   for (Section &section : sections_) {
-    const auto found = std::find_if(wanted.begin(), wanted.end(), [&](const Section *one) { return one->name == section.name && one->kind == section.kind; });
-    if (found == wanted.end()) wanted.push_back(&section);
-    else if (section.time <= now) *found = &section;
+    const auto found = std::find_if(wanted.begin(), wanted.end(), [&](const Section *one) {
+      return one->name == section.name && one->kind == section.kind;
+    });
+    if (found == wanted.end())
+      wanted.push_back(&section);
+    else if (section.time <= now)
+      *found = &section;
   }
   for (Section *section : wanted) {
     const bool of_elements = section->kind == Section::OF_ELEMENTS;
@@ -508,9 +570,12 @@ void Reader::read(tcv::Contents *contents) {
   while (in_.next_section(&name)) {
     if (version_ == 0 && name == "NOD")
       version_ = 1;
-    if (version_ == 0 && name != "MeshFormat" && name != "Comments") in_.fail("section $MeshFormat is to come first");
-    if (name == "MeshFormat" && version_ == 0) read_format();
-    else if (name == "Entities" || name == "PartitionedEntities") read_entities(name[0] == 'P');
+    if (version_ == 0 && name != "MeshFormat" && name != "Comments")
+      in_.fail("section $MeshFormat is to come first");
+    if (name == "MeshFormat" && version_ == 0)
+      read_format();
+    else if (name == "Entities" || name == "PartitionedEntities")
+      read_entities(name[0] == 'P');
     else if (name == (first() ? "NOD" : "Nodes"))
       read_nodes();
     else if (name == (first() ? "ELM" : "Elements"))
@@ -522,12 +587,14 @@ void Reader::read(tcv::Contents *contents) {
         try_section(name, Section::OF_ELEMENTS, contents);
       else if (name == "ElementNodeData")
         try_section(name, Section::OF_ELEMENTS_NODES, contents);
-      else in_.skip_section(name);
+      else
+        in_.skip_section(name);
       continue;
     }
     in_.end_section(name);
   }
-  if (types_->GetNumberOfValues() == 0) in_.fail("holds no elements; truncated?");
+  if (types_->GetNumberOfValues() == 0)
+    in_.fail("holds no elements; truncated?");
   const tcv::Grid grid = make_grid();
   add_views(grid, contents);
   if (grouped_ && !tcv::may_name(reading_.desc->only, "physical")) {

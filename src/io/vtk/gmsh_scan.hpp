@@ -15,11 +15,13 @@ namespace tcv {
 // Where reading has got to in a file whose bytes are in memory. A copy of one is a place to come back to.
 class GmshCursor {
 public:
-  GmshCursor(const char *path, const std::string &bytes) : path_(path), begin_(bytes.data()), at_(begin_), end_(begin_ + bytes.size()) {}
+  GmshCursor(const char *path, const std::string &bytes)
+      : path_(path), begin_(bytes.data()), at_(begin_), end_(begin_ + bytes.size()) {}
 
   // ── lines, which are text in all files ──
-  bool next_section(std::string *name); // moves on to after the line "$Name" that comes next; false at the end of the file
-  void end_section(const std::string &name); // the line "$EndName" has to come next
+  bool
+  next_section(std::string *name); // moves on to after the line "$Name" that comes next; false at the end of the file
+  void end_section(const std::string &name);  // the line "$EndName" has to come next
   void skip_section(const std::string &name); // to after the line "$EndName", wherever it is
   std::string line();                         // the rest of this one; moves on to the next
   int64_t text_integer(const char *what);
@@ -37,7 +39,8 @@ public:
   int64_t count(int64_t value, int64_t bytes, int64_t letters, const char *what) const;
   int64_t left() const { return end_ - at_; } // bytes
 
-  [[noreturn]] void fail(const char *format, ...) const __attribute__((format(printf, 2, 3))); // with the file's name and the place
+  [[noreturn]] void fail(const char *format, ...) const
+      __attribute__((format(printf, 2, 3))); // with the file's name and the place
 
 private:
   std::pair<const char *, const char *> word(const char *what); // the next, in this line or a later one

@@ -103,11 +103,13 @@ class LegacyFile {
 public:
   explicit LegacyFile(const char *path, std::vector<tcv::UnreadArray> *unread = nullptr)
       : path_(path), size_(tcv::file_size(path)), unread_(unread) {
-    if (!reader_->OpenVTKFile(path) || !reader_->ReadHeader(path) || !next() || !is("dataset") || !next()) damaged("the header");
+    if (!reader_->OpenVTKFile(path) || !reader_->ReadHeader(path) || !next() || !is("dataset") || !next())
+      damaged("the header");
   }
   LegacyFile(const char *path, const char *type, std::vector<tcv::UnreadArray> *unread = nullptr)
       : LegacyFile(path, unread) {
-    if (!is(type)) damaged("the header");
+    if (!is(type))
+      damaged("the header");
   }
   ~LegacyFile() { reader_->CloseVTKFile(); }
   LegacyFile(const LegacyFile &) = delete;
@@ -138,7 +140,8 @@ public:
     const int64_t cells = count(section), size = count(section);
     if (reader_->GetFileMajorVersion() >= 5) {
       const auto offsets = part("offsets", cells), indices = part("connectivity", size);
-      if (cells > 0 && !result->SetData(offsets, indices)) damaged(section);
+      if (cells > 0 && !result->SetData(offsets, indices))
+        damaged(section);
       return result;
     }
     const auto list = needed(section, "int", size, 1);
@@ -212,7 +215,8 @@ public:
       if (points || is("cell_data")) {
         association_ = points ? TETCAST_POINT : TETCAST_CELL;
         target = dataset->GetPointData();
-        if (!points) target = dataset->GetCellData();
+        if (!points)
+          target = dataset->GetCellData();
         have = count(points ? "POINT_DATA" : "CELL_DATA");
       } else if (!target) {
         damaged("the keyword", word_);
@@ -271,10 +275,14 @@ private:
         {"tensors", 9, vtkDataSetAttributes::TENSORS},      {"tensors6", 6, vtkDataSetAttributes::TENSORS},
         {"global_ids", 1, vtkDataSetAttributes::GLOBALIDS}, {"pedigree_ids", 1, vtkDataSetAttributes::PEDIGREEIDS},
         {"edge_flags", 1, vtkDataSetAttributes::EDGEFLAG}};
-    if (is("scalars")) return read_scalars(target, have);
-    if (is("field")) return read_field(target);
-    if (is("metadata")) return skip_metadata();
-    if (is("lookup_table")) return skip_lookup_table();
+    if (is("scalars"))
+      return read_scalars(target, have);
+    if (is("field"))
+      return read_field(target);
+    if (is("metadata"))
+      return skip_metadata();
+    if (is("lookup_table"))
+      return skip_lookup_table();
     if (is("color_scalars")) {
       begin_array(word("COLOR_SCALARS"));
       const int64_t components = count("COLOR_SCALARS");
@@ -286,7 +294,8 @@ private:
       return add(target, values(word("TEXTURE_COORDINATES"), have, components), -1);
     }
     for (const auto &entry : plain) {
-      if (!is(entry.keyword)) continue;
+      if (!is(entry.keyword))
+        continue;
       begin_array(word(entry.keyword));
       return add(target, values(word(entry.keyword), have, entry.components), entry.attribute);
     }
@@ -338,7 +347,8 @@ private:
         skip_metadata();
         name = word("FIELD");
       }
-      if (name == "NULL_ARRAY") continue;
+      if (name == "NULL_ARRAY")
+        continue;
       begin_array(name);
       const int64_t components = count("FIELD"), tuples = count("FIELD");
       try {
@@ -366,7 +376,8 @@ private:
   }
 
   Array part(const char *keyword, int64_t size) {
-    if (!next() || !is(keyword)) damaged("the list of cells");
+    if (!next() || !is(keyword))
+      damaged("the list of cells");
     const Array numbers = needed("the list of cells", word(keyword), size, 1);
     const int type = numbers->GetDataType();
     if (type != VTK_INT && type != VTK_LONG && type != VTK_LONG_LONG && type != VTK_ID_TYPE)
@@ -545,17 +556,20 @@ private:
       return lose("it is the second of that name");
     array->SetName(name_.c_str());
     const int index = target->AddArray(array);
-    if (attribute >= 0 && !target->GetAbstractAttribute(attribute)) target->SetActiveAttribute(index, attribute);
+    if (attribute >= 0 && !target->GetAbstractAttribute(attribute))
+      target->SetActiveAttribute(index, attribute);
   }
 
   std::string word(const char *section) {
-    if (!next()) damaged(section);
+    if (!next())
+      damaged(section);
     return word_;
   }
 
   int64_t count(const char *section) {
     vtkIdType value = -1;
-    if (!reader_->Read(&value)) damaged(section);
+    if (!reader_->Read(&value))
+      damaged(section);
     if (value < 0 || value > size_) {
       tcv::fail(TETCAST_ERROR_DATA, "%s: %s claims a count of %lld, which the file can't hold", path_, section,
                 static_cast<long long>(value));
@@ -575,7 +589,8 @@ private:
 // Polyhedra are written as a stream: number of faces, then for each face its number of points and the points.
 void check_face_streams(const char *path, vtkUnsignedCharArray *types, vtkCellArray *cells, int64_t point_count) {
   for (int64_t i = 0; i < cells->GetNumberOfCells(); ++i) {
-    if (types->GetValue(i) != VTK_POLYHEDRON) continue;
+    if (types->GetValue(i) != VTK_POLYHEDRON)
+      continue;
     vtkIdType size;
     const vtkIdType *stream;
     cells->GetCellAtId(i, size, stream);
@@ -584,7 +599,8 @@ void check_face_streams(const char *path, vtkUnsignedCharArray *types, vtkCellAr
     for (int64_t face = 0; good && face < stream[0]; ++face) {
       const int64_t corners = at < size ? stream[at++] : -1;
       good = corners >= 3 && corners <= size - at;
-      for (int64_t j = 0; good && j < corners; ++j, ++at) good = stream[at] >= 0 && stream[at] < point_count;
+      for (int64_t j = 0; good && j < corners; ++j, ++at)
+        good = stream[at] >= 0 && stream[at] < point_count;
     }
     if (!good || at != size) {
       tcv::fail(TETCAST_ERROR_DATA, "%s: cell %lld: the list of the polyhedron's faces is damaged", path,
@@ -594,7 +610,9 @@ void check_face_streams(const char *path, vtkUnsignedCharArray *types, vtkCellAr
 }
 
 // Offsets within the list; indices are checked by whoever uses them.
-void check_offsets(const char *path, vtkCellArray *cells) { tcv::check_cells(path, cells, INT64_MAX, "cell"); }
+void check_offsets(const char *path, vtkCellArray *cells) {
+  tcv::check_cells(path, cells, INT64_MAX, "cell");
+}
 
 vtkSmartPointer<vtkUnstructuredGrid> read_grid(const char *path, std::vector<tcv::UnreadArray> *unread) {
   LegacyFile file(path, "unstructured_grid", unread);
@@ -602,7 +620,8 @@ vtkSmartPointer<vtkUnstructuredGrid> read_grid(const char *path, std::vector<tcv
   CellArray cells;
   vtkSmartPointer<vtkUnsignedCharArray> types;
   while (file.next()) {
-    if (file.common_section(grid)) continue;
+    if (file.common_section(grid))
+      continue;
     if (file.is("cells")) {
       cells = file.cells("CELLS");
     } else if (file.is("cell_types")) {
@@ -621,7 +640,8 @@ vtkSmartPointer<vtkUnstructuredGrid> read_grid(const char *path, std::vector<tcv
       break;
     }
   }
-  if (cells && !types) tcv::fail(TETCAST_ERROR_DATA, "%s: truncated: there are CELLS, but no CELL_TYPES", path);
+  if (cells && !types)
+    tcv::fail(TETCAST_ERROR_DATA, "%s: truncated: there are CELLS, but no CELL_TYPES", path);
   return grid;
 }
 
@@ -630,7 +650,8 @@ vtkSmartPointer<vtkDataSet> read_image(LegacyFile *file) {
   while (file->next()) {
     double numbers[3];
     int dimensions[3];
-    if (file->common_section(nullptr)) continue;
+    if (file->common_section(nullptr))
+      continue;
     if (file->is("dimensions")) {
       file->dimensions(dimensions);
       image->SetDimensions(dimensions);
@@ -652,7 +673,8 @@ vtkSmartPointer<vtkDataSet> read_rectilinear(LegacyFile *file) {
   auto grid = vtkSmartPointer<vtkRectilinearGrid>::New();
   int dimensions[3] = {0, 0, 0};
   while (file->next()) {
-    if (file->common_section(nullptr)) continue;
+    if (file->common_section(nullptr))
+      continue;
     if (file->is("dimensions")) {
       file->dimensions(dimensions);
       grid->SetDimensions(dimensions);
@@ -669,7 +691,8 @@ vtkSmartPointer<vtkDataSet> read_rectilinear(LegacyFile *file) {
   }
   vtkDataArray *const axes[3] = {grid->GetXCoordinates(), grid->GetYCoordinates(), grid->GetZCoordinates()};
   for (int k = 0; k < 3; ++k) { // VTK has one of a single value where there is none
-    if (axes[k]->GetNumberOfTuples() != dimensions[k]) file->damaged("the list of coordinates");
+    if (axes[k]->GetNumberOfTuples() != dimensions[k])
+      file->damaged("the list of coordinates");
   }
   return grid;
 }
@@ -678,7 +701,8 @@ vtkSmartPointer<vtkDataSet> read_structured(LegacyFile *file) {
   auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
   int dimensions[3];
   while (file->next()) {
-    if (file->common_section(grid)) continue;
+    if (file->common_section(grid))
+      continue;
     if (file->is("dimensions")) {
       file->dimensions(dimensions);
       grid->SetDimensions(dimensions);
@@ -714,12 +738,18 @@ vtkSmartPointer<vtkPolyData> read_legacy_surface(const char *path) {
   LegacyFile file(path, "polydata");
   auto surface = vtkSmartPointer<vtkPolyData>::New();
   while (file.next()) {
-    if (file.common_section(surface)) continue;
-    if (file.is("polygons")) surface->SetPolys(file.cells("POLYGONS"));
-    else if (file.is("triangle_strips")) surface->SetStrips(file.cells("TRIANGLE_STRIPS"));
-    else if (file.is("vertices") || file.is("lines")) file.cells("VERTICES or LINES");
-    else if (file.is("cell_data") || file.is("point_data")) break; // a surface is its shape here
-    else file.damaged("a section");
+    if (file.common_section(surface))
+      continue;
+    if (file.is("polygons"))
+      surface->SetPolys(file.cells("POLYGONS"));
+    else if (file.is("triangle_strips"))
+      surface->SetStrips(file.cells("TRIANGLE_STRIPS"));
+    else if (file.is("vertices") || file.is("lines"))
+      file.cells("VERTICES or LINES");
+    else if (file.is("cell_data") || file.is("point_data"))
+      break; // a surface is its shape here
+    else
+      file.damaged("a section");
   }
   return surface;
 }

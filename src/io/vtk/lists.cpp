@@ -22,28 +22,37 @@ using Element = vtkSmartPointer<vtkXMLDataElement>;
 // The element below VTKFile that is named as its type says, or `name`.
 Element read_list(const tcv::Reading &reading, const char *name) {
   const char *path = reading.path.c_str();
-  const Element root = tcv::captured(reading.context, path, [&] { return Element::Take(vtkXMLUtilities::ReadElementFromFile(path)); });
+  const Element root =
+      tcv::captured(reading.context, path, [&] { return Element::Take(vtkXMLUtilities::ReadElementFromFile(path)); });
   const char *type = root ? (name ? name : root->GetAttribute("type")) : nullptr;
   const Element list = type ? root->FindNestedElementWithName(type) : nullptr;
-  if (!list) tcv::fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: is not the XML it should be", path);
+  if (!list)
+    tcv::fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: is not the XML it should be", path);
   return list;
 }
 
-bool is_named(vtkXMLDataElement *element, const char *name) { return element->GetName() && std::string(element->GetName()) == name; }
+bool is_named(vtkXMLDataElement *element, const char *name) {
+  return element->GetName() && std::string(element->GetName()) == name;
+}
 
 std::string file_of(const tcv::Reading &reading, vtkXMLDataElement *element, const char *attribute) {
   const char *file = element->GetAttribute(attribute);
-  if (!file || !*file) tcv::fail(TETCAST_ERROR_DATA, "%s: an element %s names no file (%s)", reading.path.c_str(), element->GetName(), attribute);
+  if (!file || !*file)
+    tcv::fail(TETCAST_ERROR_DATA, "%s: an element %s names no file (%s)", reading.path.c_str(), element->GetName(),
+              attribute);
   return tcv::beside(reading.path, file);
 }
 
-void read_group(const tcv::Reading &reading, vtkXMLDataElement *group, const std::string &path, int depth, tcv::Contents *contents) {
-  if (depth > 64) tcv::fail(TETCAST_ERROR_DATA, "%s: blocks within blocks are more than 64 deep", reading.path.c_str());
+void read_group(const tcv::Reading &reading, vtkXMLDataElement *group, const std::string &path, int depth,
+                tcv::Contents *contents) {
+  if (depth > 64)
+    tcv::fail(TETCAST_ERROR_DATA, "%s: blocks within blocks are more than 64 deep", reading.path.c_str());
   int number = -1;
   for (int i = 0; i < group->GetNumberOfNestedElements(); ++i) {
     vtkXMLDataElement *element = group->GetNestedElement(i);
     const bool leaf = is_named(element, "DataSet");
-    if (!leaf && !is_named(element, "Block") && !is_named(element, "Piece")) continue;
+    if (!leaf && !is_named(element, "Block") && !is_named(element, "Piece"))
+      continue;
     ++number;
     const char *name = element->GetAttribute("name"), *index = element->GetAttribute("index");
     const std::string own = name && *name ? name : index && *index ? index : std::to_string(number);
@@ -53,7 +62,8 @@ void read_group(const tcv::Reading &reading, vtkXMLDataElement *group, const std
       read_group(reading, element, whole, depth + 1, contents);
       continue;
     }
-    if (!element->GetAttribute("file")) continue; // an empty block
+    if (!element->GetAttribute("file"))
+      continue; // an empty block
     tcv::read_part(reading, file_of(reading, element, "file"), whole, contents);
   }
 }
@@ -79,11 +89,14 @@ void read_pieces(const Reading &reading, Contents *contents) {
   const Element list = read_list(reading, nullptr);
   for (int i = 0; i < list->GetNumberOfNestedElements(); ++i) {
     vtkXMLDataElement *piece = list->GetNestedElement(i);
-    if (is_named(piece, "Piece")) read_part(reading, file_of(reading, piece, "Source"), reading.block, contents);
+    if (is_named(piece, "Piece"))
+      read_part(reading, file_of(reading, piece, "Source"), reading.block, contents);
   }
 }
 
-void read_blocks(const Reading &reading, Contents *contents) { read_group(reading, read_list(reading, nullptr), reading.block, 0, contents); }
+void read_blocks(const Reading &reading, Contents *contents) {
+  read_group(reading, read_list(reading, nullptr), reading.block, 0, contents);
+}
 
 void read_pvd(const Reading &reading, Contents *contents) {
   const Element list = read_list(reading, "Collection");
@@ -91,11 +104,14 @@ void read_pvd(const Reading &reading, Contents *contents) {
   bool timed = false;
   for (int i = 0; i < list->GetNumberOfNestedElements(); ++i) {
     vtkXMLDataElement *element = list->GetNestedElement(i);
-    if (!is_named(element, "DataSet")) continue;
+    if (!is_named(element, "DataSet"))
+      continue;
     double time = 0;
     const char *text = element->GetAttribute("timestep");
-    if (text) time = number_of(text);
-    if (!std::isfinite(time)) fail(TETCAST_ERROR_DATA, "%s: '%s' is not a time", reading.path.c_str(), text);
+    if (text)
+      time = number_of(text);
+    if (!std::isfinite(time))
+      fail(TETCAST_ERROR_DATA, "%s: '%s' is not a time", reading.path.c_str(), text);
     timed = timed || text;
     steps.push_back({time, file_of(reading, element, "file")});
   }
@@ -104,11 +120,13 @@ void read_pvd(const Reading &reading, Contents *contents) {
 
 void read_steps(const Reading &reading, std::vector<Step> steps, bool timed, Contents *contents) {
   const char *path = reading.path.c_str();
-  if (steps.empty()) fail(TETCAST_ERROR_DATA, "%s: lists no files", path);
+  if (steps.empty())
+    fail(TETCAST_ERROR_DATA, "%s: lists no files", path);
   std::stable_sort(steps.begin(), steps.end(), [](const Step &a, const Step &b) { return a.time < b.time; });
   std::vector<double> times;
   for (const Step &step : steps) {
-    if (timed && (times.empty() || step.time != times.back())) times.push_back(step.time);
+    if (timed && (times.empty() || step.time != times.back()))
+      times.push_back(step.time);
   }
   const int64_t chosen = choose_step(reading.path, *reading.desc, times);
   TetcastDatasetDesc desc = *reading.desc;
@@ -117,7 +135,8 @@ void read_steps(const Reading &reading, std::vector<Step> steps, bool timed, Con
   Reading one = reading;
   one.desc = &desc;
   for (const Step &step : steps) {
-    if (!timed || step.time == times[static_cast<size_t>(chosen)]) read_part(one, step.path, reading.block, contents);
+    if (!timed || step.time == times[static_cast<size_t>(chosen)])
+      read_part(one, step.path, reading.block, contents);
   }
   contents->times = times;
   contents->step = chosen;

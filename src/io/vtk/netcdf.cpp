@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a NetCDF file in one of the classic formats (CDF-1, 2, 5) is as long as its header says: the NetCDF library reads zeros where a
-// file was cut off, without a word. The format: "NetCDF Classic Format Specification", Unidata.
+// Whether a NetCDF file in one of the classic formats (CDF-1, 2, 5) is as long as its header says: the NetCDF library
+// reads zeros where a file was cut off, without a word. The format: "NetCDF Classic Format Specification", Unidata.
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -22,28 +22,32 @@ struct Header {
   std::vector<uint64_t> dimensions;
 
   [[noreturn]] void damaged() const {
-    tcv::fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: its NetCDF header ends or makes no sense at byte %lld", path,
-              static_cast<long long>(std::ftell(file)));
+    tcv::fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: its NetCDF header ends or makes no sense at byte %lld",
+              path, static_cast<long long>(std::ftell(file)));
   }
   uint64_t number(int bytes) {
     uint64_t value = 0;
     for (int i = 0; i < bytes; ++i) {
       const int byte = std::fgetc(file);
-      if (byte == EOF) damaged();
+      if (byte == EOF)
+        damaged();
       value = value << 8 | static_cast<uint64_t>(byte);
     }
     return value;
   }
   uint64_t count() { // of things that take at least a byte each: more than the file has is nonsense
     const uint64_t value = number(version == 5 ? 8 : 4);
-    if (value > static_cast<uint64_t>(size)) damaged();
+    if (value > static_cast<uint64_t>(size))
+      damaged();
     return value;
   }
   void skip(uint64_t bytes) {
     bytes = (bytes + 3) / 4 * 4;
     const int64_t at = std::ftell(file);
-    if (at < 0 || bytes > static_cast<uint64_t>(size - at)) damaged();
-    if (std::fseek(file, static_cast<long>(bytes), SEEK_CUR) != 0) damaged();
+    if (at < 0 || bytes > static_cast<uint64_t>(size - at))
+      damaged();
+    if (std::fseek(file, static_cast<long>(bytes), SEEK_CUR) != 0)
+      damaged();
   }
   void name() { skip(count()); }
   static uint64_t type_size(uint64_t type) {
@@ -55,7 +59,8 @@ struct Header {
     for (uint64_t i = count(); i > 0; --i) {
       name();
       const uint64_t type = number(4), values = count();
-      if (type_size(type) == 0) damaged();
+      if (type_size(type) == 0)
+        damaged();
       skip(values * type_size(type));
     }
   }
@@ -67,21 +72,27 @@ struct Variable {
 };
 
 // a · b, or the largest number there is.
-uint64_t product(uint64_t a, uint64_t b) { return b != 0 && a > UINT64_MAX / b ? UINT64_MAX : a * b; }
+uint64_t product(uint64_t a, uint64_t b) {
+  return b != 0 && a > UINT64_MAX / b ? UINT64_MAX : a * b;
+}
 
 Variable read_variable(Header &header) {
   header.name();
   Variable variable = {0, 1, false};
   for (uint64_t i = 0, n = header.count(); i < n; ++i) {
     const uint64_t dimension = header.count();
-    if (dimension >= header.dimensions.size()) header.damaged();
+    if (dimension >= header.dimensions.size())
+      header.damaged();
     const uint64_t length = header.dimensions[dimension];
-    if (length == 0 && i == 0) variable.record = true; // the unlimited one
-    else variable.bytes = product(variable.bytes, length);
+    if (length == 0 && i == 0)
+      variable.record = true; // the unlimited one
+    else
+      variable.bytes = product(variable.bytes, length);
   }
   header.attributes();
   const uint64_t type = Header::type_size(header.number(4));
-  if (type == 0) header.damaged();
+  if (type == 0)
+    header.damaged();
   variable.bytes = product(variable.bytes, type);
   header.number(header.version == 5 ? 8 : 4); // vsize: says less than the dimensions do
   variable.begin = header.number(header.version == 1 ? 4 : 8);
@@ -95,14 +106,17 @@ namespace tcv {
 void check_netcdf(const char *path) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE *)> file(std::fopen(path, "rb"), std::fclose);
   struct stat status;
-  if (!file || fstat(fileno(file.get()), &status) != 0) fail(TETCAST_ERROR_IO, "%s: can't be read", path);
+  if (!file || fstat(fileno(file.get()), &status) != 0)
+    fail(TETCAST_ERROR_IO, "%s: can't be read", path);
   Header header = {file.get(), path, status.st_size, 0, 0, {}};
   const uint64_t magic = header.number(4);
   header.version = static_cast<int>(magic & 0xff);
-  if (magic >> 8 != 0x434446) return; // HDF5, which looks after itself
+  if (magic >> 8 != 0x434446)
+    return; // HDF5, which looks after itself
   const bool large = header.version == 5;
   header.records = header.number(large ? 8 : 4);
-  if (header.records == (large ? UINT64_MAX : UINT32_MAX)) header.records = 0; // being written: as many as there are
+  if (header.records == (large ? UINT64_MAX : UINT32_MAX))
+    header.records = 0; // being written: as many as there are
   header.number(4);
   for (uint64_t i = header.count(); i > 0; --i) {
     header.name();
@@ -114,16 +128,19 @@ void check_netcdf(const char *path) {
   uint64_t record_bytes = 0, record_variables = 0;
   for (uint64_t i = header.count(); i > 0; --i) {
     variables.push_back(read_variable(header));
-    if (!variables.back().record) continue;
+    if (!variables.back().record)
+      continue;
     ++record_variables;
     const uint64_t padded = variables.back().bytes / 4 * 4 + (variables.back().bytes % 4 ? 4 : 0);
     record_bytes = padded > UINT64_MAX - record_bytes ? UINT64_MAX : record_bytes + padded;
   }
   if (record_variables == 1) { // a lone one is not padded
-    for (const Variable &variable : variables) record_bytes = variable.record ? variable.bytes : record_bytes;
+    for (const Variable &variable : variables)
+      record_bytes = variable.record ? variable.bytes : record_bytes;
   }
   for (const Variable &variable : variables) {
-    if (variable.record && header.records == 0) continue;
+    if (variable.record && header.records == 0)
+      continue;
     const uint64_t before = variable.record ? product(header.records - 1, record_bytes) : 0;
     const uint64_t total = static_cast<uint64_t>(status.st_size);
     if (variable.bytes > total || before > total - variable.bytes || variable.begin > total - variable.bytes - before) {

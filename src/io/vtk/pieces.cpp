@@ -9,6 +9,7 @@
 
 #include <vtkCell.h>
 #include <vtkCellArray.h>
+#include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDataSetAttributes.h>
 #include <vtkDoubleArray.h>
@@ -17,7 +18,6 @@
 #include <vtkIdTypeArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkCellData.h>
 #include <vtkPoints.h>
 #include <vtkTypeInt32Array.h>
 #include <vtkUnsignedCharArray.h>
@@ -36,17 +36,20 @@ std::vector<unsigned char> ghost_marks(vtkDataSetAttributes *attributes, int64_t
   std::vector<unsigned char> marks;
   for (const char *name : {"vtkGhostType", "vtkGhostLevels"}) {
     vtkDataArray *array = attributes->GetArray(name);
-    if (!array || array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != count) continue;
+    if (!array || array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != count)
+      continue;
     const bool levels = std::strcmp(name, "vtkGhostLevels") == 0;
     bool any = false;
     std::vector<unsigned char> found(static_cast<size_t>(count));
     for (int64_t i = 0; i < count; ++i) {
       const double value = array->GetComponent(i, 0);
       const int mark = value > 0 && value < 256 ? static_cast<int>(value) : 0;
-      found[static_cast<size_t>(i)] = static_cast<unsigned char>(levels && mark ? vtkDataSetAttributes::DUPLICATECELL : mark);
+      found[static_cast<size_t>(i)] =
+          static_cast<unsigned char>(levels && mark ? vtkDataSetAttributes::DUPLICATECELL : mark);
       any = any || mark;
     }
-    if (any) return found;
+    if (any)
+      return found;
   }
   return marks;
 }
@@ -63,19 +66,22 @@ template <typename Use> void each_cell(vtkUnstructuredGrid *grid, Use &&use) {
 
 // Marks the cells and points that are left out.
 void find_ghosts(vtkUnstructuredGrid *grid, PieceMap *map) {
-  const int hidden = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::REFINEDCELL | vtkDataSetAttributes::HIDDENCELL;
+  const int hidden =
+      vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::REFINEDCELL | vtkDataSetAttributes::HIDDENCELL;
   const auto cells = ghost_marks(grid->GetCellData(), grid->GetNumberOfCells());
   map->point_marks = ghost_marks(grid->GetPointData(), grid->GetNumberOfPoints());
   const auto &points = map->point_marks;
   const auto blanked = [&](vtkIdType i) { return points[static_cast<size_t>(i)] & vtkDataSetAttributes::HIDDENPOINT; };
-  if (cells.empty() && points.empty()) return;
+  if (cells.empty() && points.empty())
+    return;
 
   enum : unsigned char { UNUSED, OF_GHOSTS, OF_CELLS };
   std::vector<unsigned char> used(static_cast<size_t>(grid->GetNumberOfPoints()), UNUSED);
   map->dropped_cells.assign(static_cast<size_t>(grid->GetNumberOfCells()), 0);
   each_cell(grid, [&](size_t i, vtkIdType size, const vtkIdType *corners) {
     bool ghost = !cells.empty() && cells[i] & hidden;
-    if (!points.empty()) ghost = ghost || std::any_of(corners, corners + size, blanked);
+    if (!points.empty())
+      ghost = ghost || std::any_of(corners, corners + size, blanked);
     map->dropped_cells[i] = ghost;
     map->ghost_cells += ghost;
     for (vtkIdType j = 0; j < size; ++j) {
@@ -97,11 +103,14 @@ void find_ghosts(vtkUnstructuredGrid *grid, PieceMap *map) {
 bool has_volume(vtkUnstructuredGrid *grid) {
   bool present[256] = {};
   vtkUnsignedCharArray *types = grid->GetCellTypesArray();
-  for (int64_t i = 0; types && i < types->GetNumberOfValues(); ++i) present[types->GetValue(i)] = true;
+  for (int64_t i = 0; types && i < types->GetNumberOfValues(); ++i)
+    present[types->GetValue(i)] = true;
   for (int type = 0; type < 256; ++type) {
-    if (!present[type]) continue;
+    if (!present[type])
+      continue;
     const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
-    if (!cell || cell->GetCellDimension() == 3) return true; // what there is no such cell for is refused later
+    if (!cell || cell->GetCellDimension() == 3)
+      return true; // what there is no such cell for is refused later
   }
   return false;
 }
@@ -113,7 +122,8 @@ struct Size {
 };
 
 template <typename Indices>
-vtkSmartPointer<vtkCellArray> connect(const std::vector<tcv::Piece> &pieces, const std::vector<PieceMap> &maps, Size size) {
+vtkSmartPointer<vtkCellArray> connect(const std::vector<tcv::Piece> &pieces, const std::vector<PieceMap> &maps,
+                                      Size size) {
   using T = typename Indices::ValueType;
   vtkNew<Indices> indices, ends;
   indices->SetNumberOfValues(size.corners);
@@ -123,8 +133,10 @@ vtkSmartPointer<vtkCellArray> connect(const std::vector<tcv::Piece> &pieces, con
   *end++ = 0;
   for (size_t p = 0; p < pieces.size(); ++p) {
     each_cell(pieces[p].grid, [&](size_t i, vtkIdType corners, const vtkIdType *points) {
-      if (!maps[p].keeps_cell(i)) return;
-      for (vtkIdType j = 0; j < corners; ++j) *index++ = static_cast<T>((*maps[p].to)[static_cast<size_t>(points[j])]);
+      if (!maps[p].keeps_cell(i))
+        return;
+      for (vtkIdType j = 0; j < corners; ++j)
+        *index++ = static_cast<T>((*maps[p].to)[static_cast<size_t>(points[j])]);
       used = static_cast<T>(used + corners);
       *end++ = used;
     });
@@ -145,37 +157,43 @@ void add_faces(const tcv::Piece &piece, const PieceMap &map, vtkIdTypeArray *fac
   const vtkUnsignedCharArray *types = piece.grid->GetCellTypesArray();
   for (int64_t i = 0; i < piece.grid->GetNumberOfCells(); ++i) {
     const auto cell = static_cast<size_t>(i);
-    if (!map.keeps_cell(cell)) continue;
+    if (!map.keeps_cell(cell))
+      continue;
     if (types->GetValue(i) != VTK_POLYHEDRON) {
       starts->InsertNextValue(-1);
       continue;
     }
     int64_t at = at_cell && i < at_cell->GetNumberOfValues() ? at_cell->GetValue(i) : -1;
     const int64_t count = at >= 0 && at < end ? source->GetValue(at++) : -1;
-    if (count < 0 || count > end) bad_faces(piece.place, cell);
+    if (count < 0 || count > end)
+      bad_faces(piece.place, cell);
     starts->InsertNextValue(faces->GetNumberOfValues());
     faces->InsertNextValue(count);
     for (int64_t face = 0; face < count; ++face) {
       const int64_t corners = at < end ? source->GetValue(at++) : -1;
-      if (corners < 0 || corners > end - at) bad_faces(piece.place, cell);
+      if (corners < 0 || corners > end - at)
+        bad_faces(piece.place, cell);
       faces->InsertNextValue(corners);
       for (int64_t j = 0; j < corners; ++j) {
         const int64_t point = source->GetValue(at++);
-        if (point < 0 || point >= points || (*map.to)[static_cast<size_t>(point)] < 0) bad_faces(piece.place, cell);
+        if (point < 0 || point >= points || (*map.to)[static_cast<size_t>(point)] < 0)
+          bad_faces(piece.place, cell);
         faces->InsertNextValue((*map.to)[static_cast<size_t>(point)]);
       }
     }
   }
 }
 
-void set_cells(const std::vector<tcv::Piece> &pieces, const std::vector<PieceMap> &maps, int64_t points, vtkUnstructuredGrid *grid) {
+void set_cells(const std::vector<tcv::Piece> &pieces, const std::vector<PieceMap> &maps, int64_t points,
+               vtkUnstructuredGrid *grid) {
   Size size;
   bool polyhedra = false;
   vtkNew<vtkUnsignedCharArray> types;
   for (size_t p = 0; p < pieces.size(); ++p) {
     const vtkUnsignedCharArray *own = pieces[p].grid->GetCellTypesArray();
     each_cell(pieces[p].grid, [&](size_t i, vtkIdType corners, const vtkIdType *) {
-      if (!maps[p].keeps_cell(i)) return;
+      if (!maps[p].keeps_cell(i))
+        return;
       const unsigned char type = own->GetValue(static_cast<vtkIdType>(i));
       types->InsertNextValue(type);
       polyhedra = polyhedra || type == VTK_POLYHEDRON;
@@ -184,10 +202,13 @@ void set_cells(const std::vector<tcv::Piece> &pieces, const std::vector<PieceMap
     });
   }
   const bool narrow = size.corners < INT32_MAX && points < INT32_MAX;
-  const auto cells = narrow ? connect<vtkTypeInt32Array>(pieces, maps, size) : connect<vtkIdTypeArray>(pieces, maps, size);
-  if (!polyhedra) return grid->SetCells(types, cells);
+  const auto cells =
+      narrow ? connect<vtkTypeInt32Array>(pieces, maps, size) : connect<vtkIdTypeArray>(pieces, maps, size);
+  if (!polyhedra)
+    return grid->SetCells(types, cells);
   vtkNew<vtkIdTypeArray> faces, starts;
-  for (size_t p = 0; p < pieces.size(); ++p) add_faces(pieces[p], maps[p], faces, starts);
+  for (size_t p = 0; p < pieces.size(); ++p)
+    add_faces(pieces[p], maps[p], faces, starts);
   grid->SetCells(types, cells, starts, faces);
 }
 
@@ -196,22 +217,26 @@ void set_cells(const std::vector<tcv::Piece> &pieces, const std::vector<PieceMap
 void check_piece(const tcv::Piece &piece) {
   const char *place = piece.place.c_str();
   vtkUnstructuredGrid *grid = piece.grid;
-  if (grid->GetNumberOfPoints() == 0) tcv::fail(TETCAST_ERROR_DATA, "%s: holds no points", place);
+  if (grid->GetNumberOfPoints() == 0)
+    tcv::fail(TETCAST_ERROR_DATA, "%s: holds no points", place);
   tcv::check_dimension(place, grid->GetPoints());
   tcv::check_cells(place, grid->GetCells(), grid->GetNumberOfPoints(), "cell");
   const vtkUnsignedCharArray *types = grid->GetCellTypesArray();
   if (!types || types->GetNumberOfValues() != grid->GetNumberOfCells()) {
-    tcv::fail(TETCAST_ERROR_DATA, "%s: has %lld cells but types of %lld", place, static_cast<long long>(grid->GetNumberOfCells()),
+    tcv::fail(TETCAST_ERROR_DATA, "%s: has %lld cells but types of %lld", place,
+              static_cast<long long>(grid->GetNumberOfCells()),
               static_cast<long long>(types ? types->GetNumberOfValues() : 0));
   }
 }
 
 void warn_of_differences(const tcv::Reading &reading, const tcv::Differences &differences, int64_t merged) {
-  if (differences.points == 0) return;
+  if (differences.points == 0)
+    return;
   tetcast_context_message(reading.context, TETCAST_SEVERITY_WARNING,
-                          "%s: at %lld of %lld merged points the pieces have different values, first of '%s': those of the first piece are taken",
-                          reading.path.c_str(), static_cast<long long>(differences.points), static_cast<long long>(merged),
-                          differences.array.c_str());
+                          "%s: at %lld of %lld merged points the pieces have different values, first of '%s': those of "
+                          "the first piece are taken",
+                          reading.path.c_str(), static_cast<long long>(differences.points),
+                          static_cast<long long>(merged), differences.array.c_str());
 }
 
 } // namespace
@@ -222,7 +247,8 @@ Grid unite(const Reading &reading, std::vector<Piece> *pieces, TetcastDatasetPie
            std::vector<UnreadArray> *unread) {
   const bool lone = pieces->size() == 1;
   for (const Piece &piece : *pieces) { // empty ones are nothing but parts of a machine that had no work
-    if (piece.grid->GetNumberOfCells() > 0) check_piece(piece);
+    if (piece.grid->GetNumberOfCells() > 0)
+      check_piece(piece);
   }
   const auto useless = [&](const Piece &piece) { return !has_volume(piece.grid); };
   if (!lone && !std::all_of(pieces->begin(), pieces->end(), useless)) {
@@ -234,16 +260,21 @@ Grid unite(const Reading &reading, std::vector<Piece> *pieces, TetcastDatasetPie
 
   std::vector<PieceMap> maps(pieces->size());
   for (size_t p = 0; p < maps.size(); ++p) {
-    if ((*pieces)[p].grid->GetNumberOfCells() == 0) continue;
+    if ((*pieces)[p].grid->GetNumberOfCells() == 0)
+      continue;
     find_ghosts((*pieces)[p].grid, &maps[p]);
     counts->ghost_cells += maps[p].ghost_cells;
     counts->ghost_points += maps[p].ghost_points;
     drop_nonfinite((*pieces)[p].grid, &maps[p]);
     counts->nonfinite_cells += maps[p].nonfinite_cells;
-    const bool repeats = p > 0 && (*pieces)[p].grid->GetPoints() == (*pieces)[p - 1].grid->GetPoints(); // Exodus' blocks
-    if (!repeats) counts->nonfinite_points += maps[p].nonfinite_points;
+    const bool repeats =
+        p > 0 && (*pieces)[p].grid->GetPoints() == (*pieces)[p - 1].grid->GetPoints(); // Exodus' blocks
+    if (!repeats)
+      counts->nonfinite_points += maps[p].nonfinite_points;
   }
-  if (maps.size() == 1 && counts->ghost_cells == 0 && counts->nonfinite_points == 0 && reading.desc->merge_tolerance < 0) return (*pieces)[0].grid;
+  if (maps.size() == 1 && counts->ghost_cells == 0 && counts->nonfinite_points == 0 &&
+      reading.desc->merge_tolerance < 0)
+    return (*pieces)[0].grid;
 
   auto grid = Grid::New();
   grid->SetPoints(merge_points(*pieces, reading.desc->merge_tolerance, &maps, &counts->merged_points));

@@ -251,13 +251,21 @@ void read_exodus(const Reading &reading, Contents *contents) {
   read_plugin(reading, "exodus", "Exodus (on NetCDF or HDF5)", contents);
 }
 
-void read_vtkhdf(const Reading &reading, Contents *contents) { read_plugin(reading, "hdf", "VTKHDF", contents); }
-void read_ensight(const Reading &reading, Contents *contents) { read_plugin(reading, "ensight", "EnSight", contents); }
-void read_cgns(const Reading &reading, Contents *contents) { read_plugin(reading, "cgns", "CGNS", contents); }
+void read_vtkhdf(const Reading &reading, Contents *contents) {
+  read_plugin(reading, "hdf", "VTKHDF", contents);
+}
+void read_ensight(const Reading &reading, Contents *contents) {
+  read_plugin(reading, "ensight", "EnSight", contents);
+}
+void read_cgns(const Reading &reading, Contents *contents) {
+  read_plugin(reading, "cgns", "CGNS", contents);
+}
 
-void read_openfoam(const Reading &reading, Contents *contents) { // VTK would read the folder without looking for the file
+void read_openfoam(const Reading &reading,
+                   Contents *contents) { // VTK would read the folder without looking for the file
   const char *path = reading.path.c_str();
-  if (access(path, R_OK) != 0) fail(TETCAST_ERROR_IO, "%s: can't be opened: %s", path, std::strerror(errno));
+  if (access(path, R_OK) != 0)
+    fail(TETCAST_ERROR_IO, "%s: can't be opened: %s", path, std::strerror(errno));
   read_plugin(reading, "openfoam", "OpenFOAM", contents);
 }
 

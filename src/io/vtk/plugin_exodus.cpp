@@ -185,16 +185,19 @@ vtkSmartPointer<vtkDataObject> Exodus::read(int64_t step) {
   else
     reader_->UpdateTimeStep(times_[static_cast<size_t>(step)]);
   auto *output = vtkMultiBlockDataSet::SafeDownCast(reader_->GetOutputDataObject(0));
-  auto *blocks = output && output->GetNumberOfBlocks() > 0 ? vtkMultiBlockDataSet::SafeDownCast(output->GetBlock(0)) : nullptr;
+  auto *blocks =
+      output && output->GetNumberOfBlocks() > 0 ? vtkMultiBlockDataSet::SafeDownCast(output->GetBlock(0)) : nullptr;
   if (!blocks)
     return output;
   vtkUnstructuredGrid *first = nullptr;
   for (unsigned i = 0; i < blocks->GetNumberOfBlocks(); ++i) {
     auto *block = vtkUnstructuredGrid::SafeDownCast(blocks->GetBlock(i));
-    if (!block || block->GetNumberOfPoints() == 0) continue;
+    if (!block || block->GetNumberOfPoints() == 0)
+      continue;
     make_cells(block);
     first = first ? first : block;
-    if (block == first || block->GetNumberOfPoints() != first->GetNumberOfPoints()) continue;
+    if (block == first || block->GetNumberOfPoints() != first->GetNumberOfPoints())
+      continue;
     block->SetPoints(first->GetPoints()); // which tells that they are the same
     block->GetPointData()->ShallowCopy(first->GetPointData());
   }

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstring>
 
+#include <vtkCellArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
-#include <vtkCellArray.h>
 #include <vtkNew.h>
 
 #include "common.hpp"
@@ -19,7 +19,9 @@ struct Position {
   double x[3];
 };
 
-bool operator==(const Position &a, const Position &b) { return a.x[0] == b.x[0] && a.x[1] == b.x[1] && a.x[2] == b.x[2]; }
+bool operator==(const Position &a, const Position &b) {
+  return a.x[0] == b.x[0] && a.x[1] == b.x[1] && a.x[2] == b.x[2];
+}
 
 uint64_t hash_of(const Position &position, uint64_t salt) {
   uint64_t hash = salt * 0x9E3779B97F4A7C15u;
@@ -38,19 +40,22 @@ class Table {
 public:
   explicit Table(int64_t points) {
     size_t size = 16;
-    while (size < 2 * static_cast<size_t>(points)) size *= 2;
+    while (size < 2 * static_cast<size_t>(points))
+      size *= 2;
     slots_.assign(size, -1);
   }
   // The first point at this hash that `fits`, or -1.
   template <typename Fits> int64_t find(uint64_t hash, Fits &&fits) const {
     for (size_t at = hash & (slots_.size() - 1); slots_[at] >= 0; at = (at + 1) & (slots_.size() - 1)) {
-      if (fits(slots_[at])) return slots_[at];
+      if (fits(slots_[at]))
+        return slots_[at];
     }
     return -1;
   }
   void add(uint64_t hash, int64_t point) {
     size_t at = hash & (slots_.size() - 1);
-    while (slots_[at] >= 0) at = (at + 1) & (slots_.size() - 1);
+    while (slots_[at] >= 0)
+      at = (at + 1) & (slots_.size() - 1);
     slots_[at] = static_cast<int32_t>(point);
   }
 
@@ -69,7 +74,8 @@ public:
     return {{static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])}};
   }
   int64_t add(const Position &position, uint64_t hash) {
-    for (int k = 0; k < 3; ++k) values_[3 * count_ + k] = static_cast<T>(position.x[k]);
+    for (int k = 0; k < 3; ++k)
+      values_[3 * count_ + k] = static_cast<T>(position.x[k]);
     table_.add(hash, count_);
     return count_++;
   }
@@ -81,15 +87,16 @@ private:
   int64_t count_ = 0;
 };
 
-// Coincident points of different pieces become one; those of the same piece stay apart: the second of a piece at a place
-// goes with the second of another, as where both see a crack.
+// Coincident points of different pieces become one; those of the same piece stay apart: the second of a piece at a
+// place goes with the second of another, as where both see a crack.
 template <typename T> class ExactMerger {
 public:
   ExactMerger(T *values, int64_t limit) : points_(values, limit) { visits_.reserve(static_cast<size_t>(limit)); }
 
   int64_t take(const Position &position, int32_t piece) {
     const int64_t first = find(position, 0);
-    if (first < 0) return add(position, piece, 0);
+    if (first < 0)
+      return add(position, piece, 0);
     Visit &visit = visits_[static_cast<size_t>(first)];
     if (visit.piece != piece) {
       visit.piece = piece;
@@ -134,7 +141,8 @@ public:
     }
     for (int i = 0; i < 27; ++i) {
       const int64_t found = find({{box.x[0] + i % 3 - 1, box.x[1] + i / 3 % 3 - 1, box.x[2] + i / 9 - 1}}, position);
-      if (found >= 0) return found;
+      if (found >= 0)
+        return found;
     }
     return points_.add(position, hash_of(box, 0));
   }
@@ -142,16 +150,19 @@ public:
 
 private:
   Position box_of(const Position &position) const { // of the edge length of the tolerance
-    if (tolerance_ == 0) return position;
+    if (tolerance_ == 0)
+      return position;
     Position box;
-    for (int k = 0; k < 3; ++k) box.x[k] = std::floor(position.x[k] / tolerance_);
+    for (int k = 0; k < 3; ++k)
+      box.x[k] = std::floor(position.x[k] / tolerance_);
     return box;
   }
   int64_t find(const Position &box, const Position &position) const {
     return points_.table().find(hash_of(box, 0), [&](int64_t i) {
       const Position other = points_.at(i);
       double square = 0;
-      for (int k = 0; k < 3; ++k) square += (other.x[k] - position.x[k]) * (other.x[k] - position.x[k]);
+      for (int k = 0; k < 3; ++k)
+        square += (other.x[k] - position.x[k]) * (other.x[k] - position.x[k]);
       return tolerance_ == 0 ? other == position : square <= tolerance_ * tolerance_;
     });
   }
@@ -161,18 +172,23 @@ private:
 };
 
 template <typename Merger>
-void map_points(const std::vector<tcv::Piece> &pieces, Merger *merger, std::vector<tcv::PieceMap> *maps, int64_t *merged) {
+void map_points(const std::vector<tcv::Piece> &pieces, Merger *merger, std::vector<tcv::PieceMap> *maps,
+                int64_t *merged) {
   for (size_t p = 0; p < pieces.size(); ++p) {
     tcv::PieceMap &map = (*maps)[p];
     vtkPoints *points = pieces[p].grid->GetPoints();
     map.repeats = p > 0 && points && pieces[p - 1].grid->GetPoints() == points;
     const int64_t count = points ? points->GetNumberOfPoints() : 0;
-    if (map.repeats) map.to = (*maps)[p - 1].to;
-    else map.to = std::make_shared<std::vector<int64_t>>(static_cast<size_t>(count), -1);
-    if (map.repeats && (*maps)[p - 1].dropped_points.empty()) continue;
+    if (map.repeats)
+      map.to = (*maps)[p - 1].to;
+    else
+      map.to = std::make_shared<std::vector<int64_t>>(static_cast<size_t>(count), -1);
+    if (map.repeats && (*maps)[p - 1].dropped_points.empty())
+      continue;
     for (int64_t i = 0; i < count; ++i) {
       int64_t &to = (*map.to)[static_cast<size_t>(i)];
-      if (to >= 0 || (!map.dropped_points.empty() && map.dropped_points[static_cast<size_t>(i)])) continue;
+      if (to >= 0 || (!map.dropped_points.empty() && map.dropped_points[static_cast<size_t>(i)]))
+        continue;
       Position position;
       points->GetPoint(i, position.x);
       const int64_t before = merger->count();
@@ -183,8 +199,8 @@ void map_points(const std::vector<tcv::Piece> &pieces, Merger *merger, std::vect
 }
 
 template <typename Array>
-vtkSmartPointer<vtkPoints> merge_as(const std::vector<tcv::Piece> &pieces, int64_t limit, double tolerance, std::vector<tcv::PieceMap> *maps,
-                                    int64_t *merged) {
+vtkSmartPointer<vtkPoints> merge_as(const std::vector<tcv::Piece> &pieces, int64_t limit, double tolerance,
+                                    std::vector<tcv::PieceMap> *maps, int64_t *merged) {
   using T = typename Array::ValueType;
   vtkNew<Array> values;
   values->SetNumberOfComponents(3);
@@ -194,8 +210,10 @@ vtkSmartPointer<vtkPoints> merge_as(const std::vector<tcv::Piece> &pieces, int64
     values->Resize(merger.count()); // gives back what merging saved
     values->SetNumberOfTuples(merger.count());
   };
-  if (tolerance < 0) merge(ExactMerger<T>(values->GetPointer(0), limit));
-  else merge(NearMerger<T>(values->GetPointer(0), limit, tolerance));
+  if (tolerance < 0)
+    merge(ExactMerger<T>(values->GetPointer(0), limit));
+  else
+    merge(NearMerger<T>(values->GetPointer(0), limit, tolerance));
   auto points = vtkSmartPointer<vtkPoints>::New();
   points->SetData(values);
   return points;
@@ -208,42 +226,53 @@ namespace tcv {
 void drop_nonfinite(vtkUnstructuredGrid *grid, PieceMap *map) {
   vtkPoints *points = grid->GetPoints();
   const int64_t count = points ? points->GetNumberOfPoints() : 0;
-  if (count == 0 || first_nonfinite(points->GetData()) < 0) return;
+  if (count == 0 || first_nonfinite(points->GetData()) < 0)
+    return;
   std::vector<unsigned char> bad;
   for (int64_t i = 0; i < count; ++i) {
     double p[3];
     points->GetPoint(i, p);
-    if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) continue;
-    if (map->dropped_points.empty()) map->dropped_points.assign(static_cast<size_t>(count), 0);
-    if (map->dropped_points[static_cast<size_t>(i)]) continue; // with ghosts
-    if (bad.empty()) bad.assign(static_cast<size_t>(count), 0);
+    if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]))
+      continue;
+    if (map->dropped_points.empty())
+      map->dropped_points.assign(static_cast<size_t>(count), 0);
+    if (map->dropped_points[static_cast<size_t>(i)])
+      continue; // with ghosts
+    if (bad.empty())
+      bad.assign(static_cast<size_t>(count), 0);
     bad[static_cast<size_t>(i)] = map->dropped_points[static_cast<size_t>(i)] = 1;
     ++map->nonfinite_points;
   }
-  if (map->nonfinite_points == 0) return;
-  if (map->dropped_cells.empty()) map->dropped_cells.assign(static_cast<size_t>(grid->GetNumberOfCells()), 0);
+  if (map->nonfinite_points == 0)
+    return;
+  if (map->dropped_cells.empty())
+    map->dropped_cells.assign(static_cast<size_t>(grid->GetNumberOfCells()), 0);
   for (int64_t i = 0; i < grid->GetNumberOfCells(); ++i) {
     vtkIdType size;
     const vtkIdType *corners;
     grid->GetCells()->GetCellAtId(i, size, corners);
     unsigned char &dropped = map->dropped_cells[static_cast<size_t>(i)];
-    if (dropped || std::none_of(corners, corners + size, [&](vtkIdType j) { return bad[static_cast<size_t>(j)]; })) continue;
+    if (dropped || std::none_of(corners, corners + size, [&](vtkIdType j) { return bad[static_cast<size_t>(j)]; }))
+      continue;
     dropped = 1;
     ++map->nonfinite_cells;
   }
 }
 
-vtkSmartPointer<vtkPoints> merge_points(const std::vector<Piece> &pieces, double tolerance, std::vector<PieceMap> *maps, int64_t *merged) {
+vtkSmartPointer<vtkPoints> merge_points(const std::vector<Piece> &pieces, double tolerance, std::vector<PieceMap> *maps,
+                                        int64_t *merged) {
   int64_t limit = 0;
   bool single = true;
   for (size_t p = 0; p < pieces.size(); ++p) {
     vtkPoints *points = pieces[p].grid->GetPoints();
-    if (!points || (p > 0 && pieces[p - 1].grid->GetPoints() == points)) continue;
+    if (!points || (p > 0 && pieces[p - 1].grid->GetPoints() == points))
+      continue;
     limit += points->GetNumberOfPoints();
     single = single && points->GetDataType() == VTK_FLOAT;
   }
   if (limit >= INT32_MAX) {
-    fail(TETCAST_ERROR_LIMIT, "%s: %lld points are more than can be addressed", pieces[0].place.c_str(), static_cast<long long>(limit));
+    fail(TETCAST_ERROR_LIMIT, "%s: %lld points are more than can be addressed", pieces[0].place.c_str(),
+         static_cast<long long>(limit));
   }
   return single ? merge_as<vtkFloatArray>(pieces, limit, tolerance, maps, merged)
                 : merge_as<vtkDoubleArray>(pieces, limit, tolerance, maps, merged);

@@ -25,7 +25,8 @@ struct PieceMap {
 void drop_nonfinite(vtkUnstructuredGrid *grid, PieceMap *map);
 
 // Fills `to`, counts the points that became one with another, and returns the points of the whole.
-vtkSmartPointer<vtkPoints> merge_points(const std::vector<Piece> &pieces, double tolerance, std::vector<PieceMap> *maps, int64_t *merged);
+vtkSmartPointer<vtkPoints> merge_points(const std::vector<Piece> &pieces, double tolerance, std::vector<PieceMap> *maps,
+                                        int64_t *merged);
 
 } // namespace tcv
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// ParaView's .series files, JSON: {"file-series-version": "1.0", "files": [{"name": "a.vtu", "time": 0.5}, …]}. What else they hold is
-// passed over.
+// ParaView's .series files, JSON: {"file-series-version": "1.0", "files": [{"name": "a.vtu", "time": 0.5}, …]}. What
+// else they hold is passed over.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -18,26 +18,31 @@ public:
 
   [[noreturn]] void damaged() const {
     const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
-    tcv::fail(TETCAST_ERROR_DATA, "%s:%lld: truncated or damaged: is not the JSON of a file series", path_, static_cast<long long>(line));
+    tcv::fail(TETCAST_ERROR_DATA, "%s:%lld: truncated or damaged: is not the JSON of a file series", path_,
+              static_cast<long long>(line));
   }
 
   char peek() {
-    while (at_ < text_.size() && std::strchr(" \t\r\n", text_[at_]) && text_[at_]) ++at_;
+    while (at_ < text_.size() && std::strchr(" \t\r\n", text_[at_]) && text_[at_])
+      ++at_;
     return at_ < text_.size() ? text_[at_] : '\0';
   }
   bool take(char c) {
-    if (peek() != c) return false;
+    if (peek() != c)
+      return false;
     ++at_;
     return true;
   }
   void expect(char c) {
-    if (!take(c)) damaged();
+    if (!take(c))
+      damaged();
   }
 
   // Calls `use(key)` for each member; it takes the value.
   template <typename Use> void object(Use &&use) {
     expect('{');
-    if (take('}')) return;
+    if (take('}'))
+      return;
     do {
       const std::string key = string();
       expect(':');
@@ -47,8 +52,10 @@ public:
   }
   template <typename Use> void array(Use &&use) {
     expect('[');
-    if (take(']')) return;
-    do use();
+    if (take(']'))
+      return;
+    do
+      use();
     while (take(','));
     expect(']');
   }
@@ -57,10 +64,13 @@ public:
     expect('"');
     std::string result;
     for (; at_ < text_.size() && text_[at_] != '"'; ++at_) {
-      if (text_[at_] != '\\') result += text_[at_];
-      else if (++at_ < text_.size()) escape(&result);
+      if (text_[at_] != '\\')
+        result += text_[at_];
+      else if (++at_ < text_.size())
+        escape(&result);
     }
-    if (at_ >= text_.size()) damaged();
+    if (at_ >= text_.size())
+      damaged();
     ++at_;
     return result;
   }
@@ -69,22 +79,27 @@ public:
     peek();
     const size_t length = std::min(text_.find_first_not_of("+-.0123456789eE", at_), text_.size()) - at_;
     const double value = tcv::number_of(text_.substr(at_, length));
-    if (!std::isfinite(value)) damaged();
+    if (!std::isfinite(value))
+      damaged();
     at_ += length;
     return value;
   }
 
   void skip(int depth = 0) {
-    if (depth > 64) damaged();
+    if (depth > 64)
+      damaged();
     const char c = peek();
-    if (c == '{') return object([&](const std::string &) { skip(depth + 1); });
-    if (c == '[') return array([&] { skip(depth + 1); });
+    if (c == '{')
+      return object([&](const std::string &) { skip(depth + 1); });
+    if (c == '[')
+      return array([&] { skip(depth + 1); });
     if (c == '"') {
       string();
       return;
     }
     for (const char *word : {"true", "false", "null"}) {
-      if (text_.compare(at_, std::strlen(word), word) != 0) continue;
+      if (text_.compare(at_, std::strlen(word), word) != 0)
+        continue;
       at_ += std::strlen(word);
       return;
     }
@@ -101,16 +116,23 @@ private:
       return;
     }
     unsigned code = 0;
-    if (letter != 'u' || at_ + 4 >= text_.size()) damaged();
+    if (letter != 'u' || at_ + 4 >= text_.size())
+      damaged();
     for (int i = 0; i < 4; ++i) {
       const char digit[2] = {text_[++at_], '\0'};
-      if (!std::strchr("0123456789abcdefABCDEF", digit[0]) || !digit[0]) damaged();
+      if (!std::strchr("0123456789abcdefABCDEF", digit[0]) || !digit[0])
+        damaged();
       code = code * 16 + static_cast<unsigned>(std::strtoul(digit, nullptr, 16));
     }
-    if (code == 0 || (code >= 0xD800 && code < 0xE000)) damaged(); // no names of files
-    if (code < 0x80) *result += static_cast<char>(code);
-    else if (code < 0x800) *result += {static_cast<char>(0xC0 | code >> 6), static_cast<char>(0x80 | (code & 63))};
-    else *result += {static_cast<char>(0xE0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 63)), static_cast<char>(0x80 | (code & 63))};
+    if (code == 0 || (code >= 0xD800 && code < 0xE000))
+      damaged(); // no names of files
+    if (code < 0x80)
+      *result += static_cast<char>(code);
+    else if (code < 0x800)
+      *result += {static_cast<char>(0xC0 | code >> 6), static_cast<char>(0x80 | (code & 63))};
+    else
+      *result += {static_cast<char>(0xE0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 63)),
+                  static_cast<char>(0x80 | (code & 63))};
   }
 
   const char *path_;
@@ -129,17 +151,23 @@ void read_series(const Reading &reading, Contents *contents) {
   const auto file = [&] {
     Step step = {static_cast<double>(steps.size()), ""}; // times by number where there are none
     json.object([&](const std::string &key) {
-      if (key == "name") step.path = json.string();
-      else if (key == "time") step.time = json.number();
-      else json.skip();
+      if (key == "name")
+        step.path = json.string();
+      else if (key == "time")
+        step.time = json.number();
+      else
+        json.skip();
     });
-    if (step.path.empty()) json.damaged();
+    if (step.path.empty())
+      json.damaged();
     step.path = beside(reading.path, step.path);
     steps.push_back(step);
   };
   json.object([&](const std::string &key) {
-    if (key == "files") json.array(file);
-    else json.skip();
+    if (key == "files")
+      json.array(file);
+    else
+      json.skip();
   });
   read_steps(reading, std::move(steps), true, contents);
 }

@@ -25,13 +25,16 @@ using namespace tcv;
 template <vtkSmartPointer<vtkPolyData> (*read)(const char *)> static Polygons read_polydata(const char *path) {
   const Capture capture;
   const vtkSmartPointer<vtkPolyData> data = read(path);
-  if (capture.failed()) fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: %s", path, capture.error().c_str());
+  if (capture.failed())
+    fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: %s", path, capture.error().c_str());
   Polygons result;
-  if (!data->GetPoints()) return result;
+  if (!data->GetPoints())
+    return result;
   check_points(path, data->GetPoints());
   const int64_t points = data->GetNumberOfPoints();
   result.points.resize(3 * static_cast<size_t>(points));
-  for (int64_t i = 0; i < points; ++i) data->GetPoints()->GetPoint(i, &result.points[3 * static_cast<size_t>(i)]);
+  for (int64_t i = 0; i < points; ++i)
+    data->GetPoints()->GetPoint(i, &result.points[3 * static_cast<size_t>(i)]);
 
   vtkNew<vtkIdList> cell;
   check_cells(path, data->GetPolys(), points, "polygon");
@@ -71,7 +74,8 @@ static Polygons read_polygons(const char *path) {
   std::string extensions;
   for (const auto &reader : readers) {
     extensions += (extensions.empty() ? "" : ", ") + std::string(reader.extension);
-    if (kind.empty() ? has_extension(path, reader.extension) : kind == reader.kind) return reader.read(path);
+    if (kind.empty() ? has_extension(path, reader.extension) : kind == reader.kind)
+      return reader.read(path);
   }
   refuse(path, kind, "a surface", extensions.c_str());
 }
@@ -121,11 +125,15 @@ public:
     corners_.clear();
     for (size_t i = begin; i < end; ++i) {
       const int64_t index = merge(static_cast<size_t>(polygons_.corners[i]));
-      if (corners_.empty() || corners_.back() != index) corners_.push_back(index);
+      if (corners_.empty() || corners_.back() != index)
+        corners_.push_back(index);
     }
-    while (corners_.size() > 1 && corners_.front() == corners_.back()) corners_.pop_back();
-    if (corners_.size() == 3) triangle(0, 1, 2);
-    if (corners_.size() > 3) cut();
+    while (corners_.size() > 1 && corners_.front() == corners_.back())
+      corners_.pop_back();
+    if (corners_.size() == 3)
+      triangle(0, 1, 2);
+    if (corners_.size() > 3)
+      cut();
   }
 
   std::vector<double> points;
@@ -134,17 +142,20 @@ public:
 private:
   // Numbers the points in the order polygons use them; unused ones are left out.
   int64_t merge(size_t i) {
-    if (merged_[i] >= 0) return merged_[i];
+    if (merged_[i] >= 0)
+      return merged_[i];
     const double *p = &polygons_.points[3 * i];
     const Point point = {p[0] + 0.0, p[1] + 0.0, p[2] + 0.0}; // −0 is 0
     const auto [entry, is_new] = numbers_.emplace(point, static_cast<int64_t>(points.size() / 3));
-    if (is_new) points.insert(points.end(), point.begin(), point.end());
+    if (is_new)
+      points.insert(points.end(), point.begin(), point.end());
     return merged_[i] = entry->second;
   }
 
   void triangle(size_t a, size_t b, size_t c) {
     const int64_t ids[3] = {corners_[a], corners_[b], corners_[c]};
-    if (ids[0] != ids[1] && ids[1] != ids[2] && ids[2] != ids[0]) triangles.insert(triangles.end(), ids, ids + 3);
+    if (ids[0] != ids[1] && ids[1] != ids[2] && ids[2] != ids[0])
+      triangles.insert(triangles.end(), ids, ids + 3);
   }
 
   void cut() {
@@ -182,7 +193,8 @@ private:
 template <typename T> static T *copied(const std::vector<T> &values) {
   const size_t size = values.size() * sizeof(T);
   T *memory = static_cast<T *>(std::malloc(size));
-  if (!memory) throw std::bad_alloc();
+  if (!memory)
+    throw std::bad_alloc();
   std::memcpy(memory, values.data(), size);
   return memory;
 }
@@ -194,7 +206,8 @@ static void read_surface(const char *path, TetcastSurface *surface) {
   Builder builder(polygons);
   for (size_t i = 0, begin = 0; i < polygons.ends.size(); begin = polygons.ends[i++])
     builder.add(begin, polygons.ends[i]);
-  if (builder.triangles.empty()) fail(TETCAST_ERROR_DATA, "%s: holds no triangles", path);
+  if (builder.triangles.empty())
+    fail(TETCAST_ERROR_DATA, "%s: holds no triangles", path);
   surface->vertex_count = static_cast<int64_t>(builder.points.size() / 3);
   surface->triangle_count = static_cast<int64_t>(builder.triangles.size() / 3);
   surface->vertices = copied(builder.points);
@@ -202,18 +215,21 @@ static void read_surface(const char *path, TetcastSurface *surface) {
 }
 
 TetcastStatus tetcast_surface_read(TetcastContext *context, const char *path, TetcastSurface *surface) {
-  if (surface) *surface = {};
+  if (surface)
+    *surface = {};
   if (!context || !path || !surface) {
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
                                  "tetcast_surface_read: context, path and surface must not be NULL");
   }
   const TetcastStatus status = fence(context, path, [&] { read_surface(path, surface); });
-  if (status != TETCAST_OK) tetcast_surface_release(surface);
+  if (status != TETCAST_OK)
+    tetcast_surface_release(surface);
   return status;
 }
 
 void tetcast_surface_release(TetcastSurface *surface) {
-  if (!surface) return;
+  if (!surface)
+    return;
   std::free(surface->vertices);
   std::free(surface->triangles);
   std::free(surface->holes);

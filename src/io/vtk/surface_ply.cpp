@@ -35,7 +35,8 @@ bool parse_type(const std::string &name, char *type, int *size) {
                {"int8", 'i', 1},  {"uint8", 'u', 1},  {"int16", 'i', 2},   {"uint16", 'u', 2},
                {"int32", 'i', 4}, {"uint32", 'u', 4}, {"float32", 'f', 4}, {"float64", 'f', 8}};
   for (const auto &entry : types) {
-    if (name != entry.name) continue;
+    if (name != entry.name)
+      continue;
     *type = entry.type;
     *size = entry.size;
     return true;
@@ -47,7 +48,8 @@ bool parse_type(const std::string &name, char *type, int *size) {
 std::vector<Element> parse_header(const char *path, const std::string &bytes, Encoding *encoding, size_t *body) {
   size_t end = bytes.find("\nend_header");
   const size_t newline = end == std::string::npos ? end : bytes.find('\n', end + 1);
-  if (newline == std::string::npos) tcv::fail(TETCAST_ERROR_DATA, "%s: truncated: the header does not end", path);
+  if (newline == std::string::npos)
+    tcv::fail(TETCAST_ERROR_DATA, "%s: truncated: the header does not end", path);
   *body = newline + 1;
   const std::string header = bytes.substr(0, end);
   tcv::Scanner scanner(path, header);
@@ -59,10 +61,14 @@ std::vector<Element> parse_header(const char *path, const std::string &bytes, En
     if (keyword == "format") {
       const std::string format = scanner.word();
       known = true;
-      if (format == "ascii") *encoding = TEXT;
-      else if (format == "binary_little_endian") *encoding = LITTLE;
-      else if (format == "binary_big_endian") *encoding = BIG;
-      else good = false;
+      if (format == "ascii")
+        *encoding = TEXT;
+      else if (format == "binary_little_endian")
+        *encoding = LITTLE;
+      else if (format == "binary_big_endian")
+        *encoding = BIG;
+      else
+        good = false;
     } else if (keyword == "element") {
       const std::string name = scanner.word();
       elements.push_back({name, scanner.integer("a count"), {}});
@@ -76,11 +82,14 @@ std::vector<Element> parse_header(const char *path, const std::string &bytes, En
       }
       good = good && parse_type(type, &property.type, &property.size) && !elements.empty();
       property.name = scanner.word();
-      if (good) elements.back().properties.push_back(property);
+      if (good)
+        elements.back().properties.push_back(property);
     }
-    if (!good) tcv::fail(TETCAST_ERROR_DATA, "%s: line %d: can't be understood", path, scanner.line());
+    if (!good)
+      tcv::fail(TETCAST_ERROR_DATA, "%s: line %d: can't be understood", path, scanner.line());
   }
-  if (!known) tcv::fail(TETCAST_ERROR_DATA, "%s: the header names no format", path);
+  if (!known)
+    tcv::fail(TETCAST_ERROR_DATA, "%s: the header names no format", path);
   return elements;
 }
 
@@ -92,16 +101,20 @@ public:
         at_(bytes.data() + body), end_(bytes.data() + bytes.size()) {}
 
   void begin(const Element &element, int64_t i) {
-    if (encoding_ == TEXT && !scanner_.next_line()) scanner_.truncated(element.name.c_str(), i, element.count);
+    if (encoding_ == TEXT && !scanner_.next_line())
+      scanner_.truncated(element.name.c_str(), i, element.count);
   }
 
   double value(const Element &element, int64_t i, char type, int size) {
-    if (encoding_ == TEXT) return scanner_.number("a number");
-    if (end_ - at_ < size) scanner_.truncated(element.name.c_str(), i, element.count);
+    if (encoding_ == TEXT)
+      return scanner_.number("a number");
+    if (end_ - at_ < size)
+      scanner_.truncated(element.name.c_str(), i, element.count);
     unsigned char bytes[8];
     std::memcpy(bytes, at_, static_cast<size_t>(size));
     at_ += size;
-    if (encoding_ == BIG) std::reverse(bytes, bytes + size);
+    if (encoding_ == BIG)
+      std::reverse(bytes, bytes + size);
     return decode(bytes, type, size);
   }
 
@@ -112,8 +125,10 @@ private:
     return static_cast<double>(value);
   }
   static double decode(const unsigned char *bytes, char type, int size) {
-    if (type == 'f') return size == 4 ? as<float>(bytes) : as<double>(bytes);
-    if (type == 'u') return size == 1 ? as<uint8_t>(bytes) : size == 2 ? as<uint16_t>(bytes) : as<uint32_t>(bytes);
+    if (type == 'f')
+      return size == 4 ? as<float>(bytes) : as<double>(bytes);
+    if (type == 'u')
+      return size == 1 ? as<uint8_t>(bytes) : size == 2 ? as<uint16_t>(bytes) : as<uint32_t>(bytes);
     return size == 1 ? as<int8_t>(bytes) : size == 2 ? as<int16_t>(bytes) : as<int32_t>(bytes);
   }
 
@@ -140,9 +155,11 @@ Polygons read_ply(const char *path) {
   Values values(path, bytes, body, encoding);
   Polygons result;
   for (const Element &element : elements) {
-    if (element.properties.empty()) continue; // nothing is stored, whatever the count
+    if (element.properties.empty())
+      continue; // nothing is stored, whatever the count
     const bool vertices = element.name == "vertex", faces = element.name == "face";
-    if (element.name == "tristrips") fail(TETCAST_ERROR_UNSUPPORTED, "%s: triangle strips in PLY can't be read", path);
+    if (element.name == "tristrips")
+      fail(TETCAST_ERROR_UNSUPPORTED, "%s: triangle strips in PLY can't be read", path);
     for (int64_t i = 0; i < element.count; ++i) {
       values.begin(element, i);
       double position[3] = {NAN, NAN, NAN};
@@ -160,11 +177,14 @@ Polygons read_ply(const char *path) {
           fail(TETCAST_ERROR_DATA, "%s: %s %lld: bad count", path, element.name.c_str(), static_cast<long long>(i));
         for (int64_t j = 0; j < count; ++j) {
           const double value = values.value(element, i, property.type, property.size);
-          if (corners) result.corners.push_back(whole(value));
+          if (corners)
+            result.corners.push_back(whole(value));
         }
-        if (corners) result.end_polygon();
+        if (corners)
+          result.end_polygon();
       }
-      if (vertices) result.points.insert(result.points.end(), position, position + 3);
+      if (vertices)
+        result.points.insert(result.points.end(), position, position + 3);
     }
   }
   return result;

@@ -17,23 +17,29 @@ bool Scanner::next_line() {
     line_end_ = newline ? static_cast<const char *>(newline) : end_;
     at_ = newline ? line_end_ + 1 : end_;
     const void *comment = std::memchr(word_, '#', static_cast<size_t>(line_end_ - word_));
-    if (comment) line_end_ = static_cast<const char *>(comment);
-    while (word_ < line_end_ && static_cast<unsigned char>(*word_) <= ' ') ++word_;
-    if (word_ < line_end_) return true;
+    if (comment)
+      line_end_ = static_cast<const char *>(comment);
+    while (word_ < line_end_ && static_cast<unsigned char>(*word_) <= ' ')
+      ++word_;
+    if (word_ < line_end_)
+      return true;
   }
   word_ = line_end_ = end_;
   return false;
 }
 
 std::string Scanner::word() {
-  while (word_ < line_end_ && static_cast<unsigned char>(*word_) <= ' ') ++word_;
+  while (word_ < line_end_ && static_cast<unsigned char>(*word_) <= ' ')
+    ++word_;
   const char *start = word_;
-  while (word_<line_end_ &&static_cast<unsigned char>(*word_)> ' ') ++word_;
+  while (word_<line_end_ &&static_cast<unsigned char>(*word_)> ' ')
+    ++word_;
   return std::string(start, word_);
 }
 
 bool Scanner::at_end() {
-  while (word_ < line_end_ && static_cast<unsigned char>(*word_) <= ' ') ++word_;
+  while (word_ < line_end_ && static_cast<unsigned char>(*word_) <= ' ')
+    ++word_;
   return word_ == line_end_;
 }
 
@@ -70,14 +76,16 @@ static Polygons read_stl_text(const char *path, const std::string &text) {
   while (scanner.next_line()) {
     const std::string word = scanner.word();
     if (word == "vertex") {
-      for (int i = 0; i < 3; ++i) result.points.push_back(scanner.number("a coordinate"));
+      for (int i = 0; i < 3; ++i)
+        result.points.push_back(scanner.number("a coordinate"));
       result.corners.push_back(result.point_count() - 1);
     } else if (word == "endloop") {
       result.end_polygon();
     }
     ended = word == "endsolid";
   }
-  if (!ended) fail(TETCAST_ERROR_DATA, "%s: truncated: the last line is not 'endsolid'", path);
+  if (!ended)
+    fail(TETCAST_ERROR_DATA, "%s: truncated: the last line is not 'endsolid'", path);
   return result;
 }
 
@@ -94,8 +102,10 @@ static Polygons read_stl_binary(const char *path, const std::string &bytes, uint
   for (size_t i = 0; i < count; ++i) {
     float corners[9];
     std::memcpy(corners, &bytes[header + facet * i + 12], sizeof corners); // after the normal
-    for (float value : corners) result.points.push_back(static_cast<double>(value));
-    for (size_t j = 0; j < 3; ++j) result.corners.push_back(static_cast<int64_t>(3 * i + j));
+    for (float value : corners)
+      result.points.push_back(static_cast<double>(value));
+    for (size_t j = 0; j < 3; ++j)
+      result.corners.push_back(static_cast<int64_t>(3 * i + j));
     result.end_polygon();
   }
   return result;
@@ -104,7 +114,8 @@ static Polygons read_stl_binary(const char *path, const std::string &bytes, uint
 Polygons read_stl(const char *path) {
   const std::string bytes = file_contents(path);
   uint32_t claimed = 0;
-  if (bytes.size() >= 84) std::memcpy(&claimed, &bytes[80], sizeof claimed);
+  if (bytes.size() >= 84)
+    std::memcpy(&claimed, &bytes[80], sizeof claimed);
   const bool binary_size = bytes.size() >= 84 && bytes.size() == 84 + 50 * static_cast<size_t>(claimed);
   // Binary files may begin with "solid" as well.
   const bool text = !binary_size && bytes.compare(0, 5, "solid") == 0 && bytes.find('\0') == std::string::npos;
@@ -129,19 +140,24 @@ Polygons read_off(const char *path) {
   }
   int64_t points = 0, faces = 0;
   const auto parsed = std::from_chars(first.data(), first.data() + first.size(), points);
-  if (parsed.ec == std::errc()) faces = scanner.integer("the number of faces");
+  if (parsed.ec == std::errc())
+    faces = scanner.integer("the number of faces");
   if (parsed.ec != std::errc() || points < 0 || faces < 0) {
     fail(TETCAST_ERROR_DATA, "%s: line %d: numbers of vertices and faces expected", path, scanner.line());
   }
   // One vertex or face a line: what follows the coordinates or indices is normals and colours.
   for (int64_t i = 0; i < points; ++i) {
-    if (!scanner.next_line()) scanner.truncated("vertices", i, points);
-    for (int j = 0; j < 3; ++j) result.points.push_back(scanner.number("a coordinate"));
+    if (!scanner.next_line())
+      scanner.truncated("vertices", i, points);
+    for (int j = 0; j < 3; ++j)
+      result.points.push_back(scanner.number("a coordinate"));
   }
   for (int64_t i = 0; i < faces; ++i) {
-    if (!scanner.next_line()) scanner.truncated("faces", i, faces);
+    if (!scanner.next_line())
+      scanner.truncated("faces", i, faces);
     const int64_t corners = scanner.integer("a number of corners");
-    for (int64_t j = 0; j < corners; ++j) result.corners.push_back(scanner.integer("a vertex index"));
+    for (int64_t j = 0; j < corners; ++j)
+      result.corners.push_back(scanner.integer("a vertex index"));
     result.end_polygon();
   }
   return result;
@@ -156,11 +172,13 @@ Polygons read_obj(const char *path) {
   while (scanner.next_line()) {
     const std::string keyword = scanner.word();
     if (keyword == "v") {
-      for (int j = 0; j < 3; ++j) result.points.push_back(scanner.number("a coordinate"));
+      for (int j = 0; j < 3; ++j)
+        result.points.push_back(scanner.number("a coordinate"));
     } else if (keyword == "f") {
       for (std::string word = scanner.word(); !word.empty(); word = scanner.word()) {
         if (word == "\\") { // goes on in the next line
-          if (!scanner.next_line()) break;
+          if (!scanner.next_line())
+            break;
           continue;
         }
         int64_t index = 0; // "7", "7/1", "7//3" or "7/1/3", from 1, or from the end when negative

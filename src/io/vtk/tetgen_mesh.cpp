@@ -26,14 +26,17 @@ struct Header {
 
 Header read_header(tcv::Scanner *scanner, int64_t limit) {
   Header header = {0, 0, 0, 0};
-  if (!scanner->next_line()) scanner->truncated("lines", 0, 1);
+  if (!scanner->next_line())
+    scanner->truncated("lines", 0, 1);
   int64_t *const fields[] = {&header.count, &header.width, &header.attributes, &header.markers};
   for (int i = 0; i < 4; ++i) {
-    if (i < 2) *fields[i] = scanner->integer("a count");
-    else if (!scanner->at_end()) *fields[i] = scanner->integer("a count");
+    if (i < 2)
+      *fields[i] = scanner->integer("a count");
+    else if (!scanner->at_end())
+      *fields[i] = scanner->integer("a count");
     if (*fields[i] < 0 || *fields[i] > limit) {
-      tcv::fail(TETCAST_ERROR_DATA, "%s: line %d: claims a count of %lld, which the file can't hold", scanner->path(), scanner->line(),
-                static_cast<long long>(*fields[i]));
+      tcv::fail(TETCAST_ERROR_DATA, "%s: line %d: claims a count of %lld, which the file can't hold", scanner->path(),
+                scanner->line(), static_cast<long long>(*fields[i]));
     }
   }
   return header;
@@ -41,12 +44,15 @@ Header read_header(tcv::Scanner *scanner, int64_t limit) {
 
 // The number at the start of the next line has to be the next.
 void begin_row(tcv::Scanner *scanner, int64_t i, int64_t count, const char *what, int64_t *base) {
-  if (!scanner->next_line()) scanner->truncated(what, i, count);
+  if (!scanner->next_line())
+    scanner->truncated(what, i, count);
   const int64_t number = scanner->integer("a number");
-  if (i == 0) *base = number;
-  if ((*base == 0 || *base == 1) && number == *base + i) return;
-  tcv::fail(TETCAST_ERROR_DATA, "%s: line %d: number %lld where %lld is to come", scanner->path(), scanner->line(), static_cast<long long>(number),
-            static_cast<long long>(i == 0 ? 0 : *base + i));
+  if (i == 0)
+    *base = number;
+  if ((*base == 0 || *base == 1) && number == *base + i)
+    return;
+  tcv::fail(TETCAST_ERROR_DATA, "%s: line %d: number %lld where %lld is to come", scanner->path(), scanner->line(),
+            static_cast<long long>(number), static_cast<long long>(i == 0 ? 0 : *base + i));
 }
 
 Arrays make_arrays(const Header &header, const std::string &name, const char *marker) {
@@ -97,8 +103,11 @@ int64_t read_nodes(const std::string &path, const char *only, vtkUnstructuredGri
   tcv::Scanner scanner(path.c_str(), text);
   const auto size = static_cast<int64_t>(text.size());
   const Header header = read_header(&scanner, size);
-  if (header.width != 3) tcv::fail(TETCAST_ERROR_DATA, "%s: holds points of %lld dimensions, not 3", path.c_str(), static_cast<long long>(header.width));
-  if (header.attributes > 0 && header.count > size / header.attributes) scanner.truncated("points", 0, header.count);
+  if (header.width != 3)
+    tcv::fail(TETCAST_ERROR_DATA, "%s: holds points of %lld dimensions, not 3", path.c_str(),
+              static_cast<long long>(header.width));
+  if (header.attributes > 0 && header.count > size / header.attributes)
+    scanner.truncated("points", 0, header.count);
   vtkNew<vtkDoubleArray> positions;
   positions->SetNumberOfComponents(3);
   positions->SetNumberOfTuples(header.count);
@@ -106,7 +115,8 @@ int64_t read_nodes(const std::string &path, const char *only, vtkUnstructuredGri
   int64_t base = 0;
   for (int64_t i = 0; i < header.count; ++i) {
     begin_row(&scanner, i, header.count, "points", &base);
-    for (int k = 0; k < 3; ++k) positions->SetValue(3 * i + k, scanner.number("a coordinate"));
+    for (int k = 0; k < 3; ++k)
+      positions->SetValue(3 * i + k, scanner.number("a coordinate"));
     read_values(&scanner, i, TETCAST_POINT, arrays, unread);
   }
   vtkNew<vtkPoints> points;
@@ -123,10 +133,11 @@ void read_elements(const std::string &path, int64_t base, const char *only, vtkU
   const auto size = static_cast<int64_t>(text.size());
   const Header header = read_header(&scanner, size);
   if (header.width != 4) {
-    tcv::fail(TETCAST_ERROR_UNSUPPORTED, "%s: holds elements of %lld points; only tetrahedra of 4 are read", path.c_str(),
-              static_cast<long long>(header.width));
+    tcv::fail(TETCAST_ERROR_UNSUPPORTED, "%s: holds elements of %lld points; only tetrahedra of 4 are read",
+              path.c_str(), static_cast<long long>(header.width));
   }
-  if (header.attributes > 0 && header.count > size / header.attributes) scanner.truncated("tetrahedra", 0, header.count);
+  if (header.attributes > 0 && header.count > size / header.attributes)
+    scanner.truncated("tetrahedra", 0, header.count);
   vtkNew<vtkIdTypeArray> indices, ends;
   indices->SetNumberOfValues(4 * header.count);
   ends->SetNumberOfValues(header.count + 1);
@@ -137,7 +148,8 @@ void read_elements(const std::string &path, int64_t base, const char *only, vtkU
   int64_t first = 0;
   for (int64_t i = 0; i < header.count; ++i) {
     begin_row(&scanner, i, header.count, "tetrahedra", &first);
-    for (int k = 0; k < 4; ++k) indices->SetValue(4 * i + k, scanner.integer("the number of a point") - base);
+    for (int k = 0; k < 4; ++k)
+      indices->SetValue(4 * i + k, scanner.integer("the number of a point") - base);
     read_values(&scanner, i, TETCAST_CELL, arrays, unread);
     ends->SetValue(i + 1, 4 * (i + 1));
   }

@@ -41,13 +41,20 @@ using DataArray = vtkSmartPointer<vtkDataArray>;
 
 static DataArray new_array(TetcastType type) {
   switch (type) {
-  case TETCAST_TYPE_FLOAT32: return vtkSmartPointer<vtkFloatArray>::New();
-  case TETCAST_TYPE_FLOAT64: return vtkSmartPointer<vtkDoubleArray>::New();
-  case TETCAST_TYPE_INT32: return vtkSmartPointer<vtkTypeInt32Array>::New();
-  case TETCAST_TYPE_UINT32: return vtkSmartPointer<vtkTypeUInt32Array>::New();
-  case TETCAST_TYPE_INT64: return vtkSmartPointer<vtkTypeInt64Array>::New();
-  case TETCAST_TYPE_UINT64: return vtkSmartPointer<vtkTypeUInt64Array>::New();
-  case TETCAST_TYPE_NONE: break;
+  case TETCAST_TYPE_FLOAT32:
+    return vtkSmartPointer<vtkFloatArray>::New();
+  case TETCAST_TYPE_FLOAT64:
+    return vtkSmartPointer<vtkDoubleArray>::New();
+  case TETCAST_TYPE_INT32:
+    return vtkSmartPointer<vtkTypeInt32Array>::New();
+  case TETCAST_TYPE_UINT32:
+    return vtkSmartPointer<vtkTypeUInt32Array>::New();
+  case TETCAST_TYPE_INT64:
+    return vtkSmartPointer<vtkTypeInt64Array>::New();
+  case TETCAST_TYPE_UINT64:
+    return vtkSmartPointer<vtkTypeUInt64Array>::New();
+  case TETCAST_TYPE_NONE:
+    break;
   }
   fail(TETCAST_ERROR_ARGUMENT, "array of unknown type %d", static_cast<int>(type));
 }
@@ -73,10 +80,12 @@ static DataArray wrap(const TetcastArray &values, int components) {
 template <typename Offsets> static vtkSmartPointer<vtkCellArray> cells_of(vtkDataArray *connectivity, int64_t count) {
   vtkNew<Offsets> offsets;
   offsets->SetNumberOfValues(count + 1);
-  for (int64_t i = 0; i <= count; ++i) offsets->SetValue(i, static_cast<typename Offsets::ValueType>(4 * i));
+  for (int64_t i = 0; i <= count; ++i)
+    offsets->SetValue(i, static_cast<typename Offsets::ValueType>(4 * i));
   auto cells = vtkSmartPointer<vtkCellArray>::New();
   connectivity->SetNumberOfComponents(1); // a flat list to VTK
-  if (!cells->SetData(offsets, connectivity)) fail(TETCAST_ERROR_DATA, "VTK refuses the mesh's indices");
+  if (!cells->SetData(offsets, connectivity))
+    fail(TETCAST_ERROR_DATA, "VTK refuses the mesh's indices");
   return cells;
 }
 
@@ -86,14 +95,16 @@ static vtkSmartPointer<vtkCellArray> make_cells(const TetcastMesh *mesh) {
   if (tetrahedra.type == TETCAST_TYPE_INT32 && count <= INT32_MAX / 4) {
     return cells_of<vtkTypeInt32Array>(wrap(tetrahedra, 4), count);
   }
-  if (tetrahedra.type == TETCAST_TYPE_INT64) return cells_of<vtkTypeInt64Array>(wrap(tetrahedra, 4), count);
+  if (tetrahedra.type == TETCAST_TYPE_INT64)
+    return cells_of<vtkTypeInt64Array>(wrap(tetrahedra, 4), count);
   vtkNew<vtkTypeInt64Array> indices; // VTK knows no unsigned ones
   indices->SetNumberOfComponents(4);
   indices->SetNumberOfTuples(count);
   for (int64_t i = 0; i < count; ++i) {
     int64_t tetrahedron[4];
     tetcast_mesh_tetrahedron(mesh, i, tetrahedron);
-    for (int j = 0; j < 4; ++j) indices->SetValue(4 * i + j, tetrahedron[j]);
+    for (int j = 0; j < 4; ++j)
+      indices->SetValue(4 * i + j, tetrahedron[j]);
   }
   return cells_of<vtkTypeInt64Array>(indices, count);
 }
@@ -102,11 +113,16 @@ static vtkSmartPointer<vtkCellArray> make_cells(const TetcastMesh *mesh) {
 static std::string xml_name(const char *name) {
   std::string result;
   for (const char *c = name; *c; ++c) {
-    if (static_cast<unsigned char>(*c) < ' ') fail(TETCAST_ERROR_ARGUMENT, "a field's name has control characters");
-    if (*c == '&') result += "&amp;";
-    else if (*c == '<') result += "&lt;";
-    else if (*c == '"') result += "&quot;";
-    else result += *c;
+    if (static_cast<unsigned char>(*c) < ' ')
+      fail(TETCAST_ERROR_ARGUMENT, "a field's name has control characters");
+    if (*c == '&')
+      result += "&amp;";
+    else if (*c == '<')
+      result += "&lt;";
+    else if (*c == '"')
+      result += "&quot;";
+    else
+      result += *c;
   }
   return result;
 }
@@ -120,9 +136,11 @@ static void add_field(vtkUnstructuredGrid *grid, const TetcastMesh *mesh, const 
          static_cast<long long>(wanted), points ? "vertices" : "cells");
   }
   vtkDataSetAttributes *attributes = grid->GetPointData();
-  if (!points) attributes = grid->GetCellData();
+  if (!points)
+    attributes = grid->GetCellData();
   const std::string written = xml_name(name);
-  if (attributes->HasArray(written.c_str())) fail(TETCAST_ERROR_ARGUMENT, "two fields are called '%s'", name);
+  if (attributes->HasArray(written.c_str()))
+    fail(TETCAST_ERROR_ARGUMENT, "two fields are called '%s'", name);
   const DataArray array = wrap(values, 1);
   array->SetName(written.c_str());
   attributes->AddArray(array);
@@ -138,37 +156,44 @@ static vtkSmartPointer<vtkUnstructuredGrid> make_grid(const TetcastMesh *mesh, i
   grid->SetPoints(points);
   grid->SetCells(VTK_TETRA, make_cells(mesh));
   for (int i = 0; i < count; ++i) {
-    if (!names[i] || !*names[i] || !fields[i]) fail(TETCAST_ERROR_ARGUMENT, "field %d or its name is missing", i);
+    if (!names[i] || !*names[i] || !fields[i])
+      fail(TETCAST_ERROR_ARGUMENT, "field %d or its name is missing", i);
     add_field(grid, mesh, names[i], fields[i]);
   }
   return grid;
 }
 
 // A new, empty file beside the target, gone with this object unless it has become the target.
-// VTK notes errno too late, when other calls have changed it. So once more: writes as many bytes as the file could have had, until
-// that fails, and says with which error; 0: it does not fail now.
+// VTK notes errno too late, when other calls have changed it. So once more: writes as many bytes as the file could have
+// had, until that fails, and says with which error; 0: it does not fail now.
 int why_not_written(const char *path, unsigned long kibibytes) {
   static const char zeros[65536] = {};
   const int file = open(path, O_CREAT | O_WRONLY | O_TRUNC | O_CLOEXEC, 0666);
   int error = file < 0 ? errno : 0;
   for (uint64_t left = uint64_t{kibibytes} * 1024 + sizeof zeros; error == 0 && left > 0;) {
     const ssize_t written = write(file, zeros, std::min<uint64_t>(left, sizeof zeros));
-    if (written > 0) left -= static_cast<uint64_t>(written);
-    else if (errno != EINTR) error = errno;
+    if (written > 0)
+      left -= static_cast<uint64_t>(written);
+    else if (errno != EINTR)
+      error = errno;
   }
-  if (file >= 0) close(file);
+  if (file >= 0)
+    close(file);
   return error;
 }
 
 // What a path means: an existing file through all links, or where a link to nothing leads.
 std::string followed(std::string path) {
   char target[PATH_MAX];
-  if (realpath(path.c_str(), target)) return target;
+  if (realpath(path.c_str(), target))
+    return target;
   for (int i = 0; i < 40; ++i) { // as many links as the system follows
     const ssize_t length = readlink(path.c_str(), target, sizeof target);
-    if (length <= 0) break;
+    if (length <= 0)
+      break;
     const size_t slash = target[0] == '/' ? std::string::npos : path.rfind('/');
-    path = (slash == std::string::npos ? "" : path.substr(0, slash + 1)) + std::string(target, static_cast<size_t>(length));
+    path = (slash == std::string::npos ? "" : path.substr(0, slash + 1)) +
+           std::string(target, static_cast<size_t>(length));
   }
   return path;
 }
@@ -189,11 +214,14 @@ public:
     while (lock_ < 0) {
       path_ = folder + ".tetcast-" + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".vtu";
       lock_ = open(path_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, exists ? former.st_mode & 0777 : 0666);
-      if (lock_ < 0 && errno != EEXIST) fail(TETCAST_ERROR_IO, "%s: can't be written: %s", target, std::strerror(errno));
+      if (lock_ < 0 && errno != EEXIST)
+        fail(TETCAST_ERROR_IO, "%s: can't be written: %s", target, std::strerror(errno));
       struct stat own;
       const bool locked = lock_ >= 0 && (flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK);
-      if (locked && (fstat(lock_, &own) != 0 || own.st_nlink > 0)) continue;
-      if (lock_ >= 0) close(lock_); // taken for a left-over before it had its lock
+      if (locked && (fstat(lock_, &own) != 0 || own.st_nlink > 0))
+        continue;
+      if (lock_ >= 0)
+        close(lock_); // taken for a left-over before it had its lock
       lock_ = -1;
     }
     if (exists) { // what is replaced keeps its mode and, where we may, its owner
@@ -202,8 +230,10 @@ public:
     }
   }
   ~Temporary() {
-    if (!path_.empty()) unlink(path_.c_str());
-    if (lock_ >= 0) close(lock_);
+    if (!path_.empty())
+      unlink(path_.c_str());
+    if (lock_ >= 0)
+      close(lock_);
   }
   Temporary(const Temporary &) = delete;
   Temporary &operator=(const Temporary &) = delete;
@@ -236,10 +266,14 @@ static void write_grid(const char *path, vtkUnstructuredGrid *grid, const Captur
     const unsigned long code = writer->GetErrorCode();
     const int error = why_not_written(temporary.path(), grid->GetActualMemorySize());
     const char *reason = "VTK does not say why";
-    if (error != 0) reason = std::strerror(error);
-    else if (code == vtkErrorCode::OutOfDiskSpaceError) reason = std::strerror(ENOSPC);
-    else if (code != vtkErrorCode::NoError) reason = vtkErrorCode::GetStringFromErrorCode(code);
-    else if (!capture.error().empty()) reason = capture.error().c_str();
+    if (error != 0)
+      reason = std::strerror(error);
+    else if (code == vtkErrorCode::OutOfDiskSpaceError)
+      reason = std::strerror(ENOSPC);
+    else if (code != vtkErrorCode::NoError)
+      reason = vtkErrorCode::GetStringFromErrorCode(code);
+    else if (!capture.error().empty())
+      reason = capture.error().c_str();
     fail(TETCAST_ERROR_IO, "%s: can't be written: %s", path, reason);
   }
   temporary.become_target();

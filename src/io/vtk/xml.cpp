@@ -98,13 +98,15 @@ private:
   bool read_header(uint64_t *values, size_t count) {
     const size_t word = this->HeaderType == 64 ? 8 : 4;
     unsigned char bytes[3 * 8];
-    if (this->DataStream->Read(bytes, count * word) < count * word) return false;
+    if (this->DataStream->Read(bytes, count * word) < count * word)
+      return false;
     this->PerformByteSwap(bytes, count, word);
     for (size_t i = 0; i < count; ++i) {
       uint32_t narrow;
       std::memcpy(&narrow, bytes + i * word, sizeof narrow);
       values[i] = narrow;
-      if (word == 8) std::memcpy(&values[i], bytes + i * word, sizeof values[i]);
+      if (word == 8)
+        std::memcpy(&values[i], bytes + i * word, sizeof values[i]);
     }
     return true;
   }
@@ -114,9 +116,11 @@ private:
   // practice for the others.
   bool blocks_hold(uint64_t bytes, uint64_t file_size) {
     uint64_t header[3];
-    if (!read_header(header, 3)) return false;
+    if (!read_header(header, 3))
+      return false;
     const auto [count, size, last] = header;
-    if (count == 0) return bytes == 0;
+    if (count == 0)
+      return bytes == 0;
     if (count > file_size / 12 + 1 || size == 0 || size > UINT64_MAX / 2 / count || last > size)
       return false;
     if ((last ? (count - 1) * size + last : count * size) < bytes)
@@ -133,7 +137,8 @@ private:
 
   bool plain_holds(uint64_t bytes, uint64_t file_size) {
     uint64_t size;
-    if (!read_header(&size, 1) || size < bytes) return false;
+    if (!read_header(&size, 1) || size < bytes)
+      return false;
     if (!this->DataStream->IsA("vtkBase64InputStream")) {
       const vtkTypeInt64 at = this->TellG();
       return at >= 0 && static_cast<uint64_t>(at) <= file_size && bytes <= file_size - static_cast<uint64_t>(at);
@@ -141,7 +146,8 @@ private:
     std::vector<unsigned char> buffer(std::min<uint64_t>(bytes, 65536)); // a letter that is none ends the data
     while (bytes > 0) {
       const size_t part = std::min<uint64_t>(bytes, buffer.size());
-      if (this->DataStream->Read(buffer.data(), part) < part) return false;
+      if (this->DataStream->Read(buffer.data(), part) < part)
+        return false;
       bytes -= part;
     }
     return true;
@@ -183,7 +189,8 @@ public:
 
 protected:
   void CreateXMLParser() override {
-    if (this->XMLParser) this->DestroyXMLParser();
+    if (this->XMLParser)
+      this->DestroyXMLParser();
     this->XMLParser = Parser::New();
   }
 
@@ -471,7 +478,8 @@ public:
 
 protected:
   int ReadPiece(vtkXMLDataElement *element) override {
-    if (!Base::ReadPiece(element)) return 0;
+    if (!Base::ReadPiece(element))
+      return 0;
     const vtkIdType points = this->GetNumberOfPointsInPiece(this->Piece),
                     cells = this->GetNumberOfCellsInPiece(this->Piece);
     const int64_t limit = 256 * tcv::file_size(this->GetFileName()); // compressed, the best mesh stays far below
@@ -501,7 +509,8 @@ protected:
   }
 
   int ReadPrimaryElement(vtkXMLDataElement *element) override {
-    if (!Base::ReadPrimaryElement(element)) return 0;
+    if (!Base::ReadPrimaryElement(element))
+      return 0;
     // Before any piece is read: an array of equal values is compressed to a thousandth and less.
     const double limit = 4096.0 * static_cast<double>(tcv::file_size(this->GetFileName()));
     const double points = size(this->WholeExtent, 1);
@@ -516,13 +525,16 @@ protected:
     for (int i = 0; i < this->NumberOfPieces; ++i) {
       const int *extent = this->PieceExtents + 6 * i;
       for (int k = 0; k < 3; ++k) {
-        if (extent[2 * k] >= this->WholeExtent[2 * k] && extent[2 * k + 1] <= this->WholeExtent[2 * k + 1] && extent[2 * k] <= extent[2 * k + 1]) continue;
+        if (extent[2 * k] >= this->WholeExtent[2 * k] && extent[2 * k + 1] <= this->WholeExtent[2 * k + 1] &&
+            extent[2 * k] <= extent[2 * k + 1])
+          continue;
         vtkErrorMacro("the extent of piece " << i << " is not within the whole extent");
         return 0;
       }
       covered += size(extent, 0);
     }
-    if (covered >= cells) return 1;
+    if (covered >= cells)
+      return 1;
     vtkErrorMacro("the pieces have " << covered << " of the " << cells << " cells of the whole extent");
     return 0;
   }
@@ -592,8 +604,8 @@ public:
 protected:
   int ReadPieceData() override { return faces_fit() ? vtkXMLUnstructuredGridReader::ReadPieceData() : 0; }
 
-  // VTK takes the first piece's arrays for those of all: it passes over others, and puts the values of one into another that it expects
-  // in its place.
+  // VTK takes the first piece's arrays for those of all: it passes over others, and puts the values of one into another
+  // that it expects in its place.
   void SetupOutputInformation(vtkInformation *information) override {
     Checked::SetupOutputInformation(information);
     for (int i = 0; i < this->NumberOfPieces; ++i) { // those there are already stay as they are
@@ -616,16 +628,19 @@ private:
   static void add_all(vtkXMLDataElement *arrays, vtkDataArraySelection *selection) {
     for (int i = 0; arrays && i < arrays->GetNumberOfNestedElements(); ++i) {
       const char *name = arrays->GetNestedElement(i)->GetAttribute("Name");
-      if (name) selection->AddArray(name);
+      if (name)
+        selection->AddArray(name);
     }
   }
 
   Numbers numbers(vtkXMLDataElement *element, int64_t count) {
     const auto values = vtkSmartPointer<vtkAbstractArray>::Take(this->CreateArray(element));
     vtkDataArray *array = vtkDataArray::SafeDownCast(values);
-    if (!array || array->GetNumberOfComponents() != 1) return nullptr;
+    if (!array || array->GetNumberOfComponents() != 1)
+      return nullptr;
     array->SetNumberOfTuples(count);
-    if (!this->ReadArrayValues(element, 0, array, 0, count, CELL_DATA)) return nullptr;
+    if (!this->ReadArrayValues(element, 0, array, 0, count, CELL_DATA))
+      return nullptr;
     const auto result = Numbers::New();
     result->DeepCopy(array);
     return result;
@@ -637,23 +652,29 @@ private:
     const int64_t count = this->NumberOfCells[this->Piece];
     vtkXMLDataElement *of_faces = this->FindDataArrayWithName(cells, "faces");
     vtkXMLDataElement *of_ends = this->FindDataArrayWithName(cells, "faceoffsets");
-    if (!of_faces || !of_ends || count == 0) return true; // what is missing is noticed by VTK
+    if (!of_faces || !of_ends || count == 0)
+      return true; // what is missing is noticed by VTK
     const Numbers ends = numbers(of_ends, count);
     int64_t size = 0; // as VTK takes it: the last end there is
-    for (int64_t i = 0; ends && i < count; ++i) size = ends->GetValue(i) > -1 ? ends->GetValue(i) : size;
+    for (int64_t i = 0; ends && i < count; ++i)
+      size = ends->GetValue(i) > -1 ? ends->GetValue(i) : size;
     const Numbers faces = ends ? numbers(of_faces, size) : nullptr;
     int64_t at = 0;
     for (int64_t i = 0; faces && i < count; ++i) {
-      if (ends->GetValue(i) < 0) continue;
+      if (ends->GetValue(i) < 0)
+        continue;
       const int64_t cell_faces = at < size ? faces->GetValue(at++) : -1;
-      if (cell_faces < 0) at = -1;
+      if (cell_faces < 0)
+        at = -1;
       for (int64_t face = 0; at >= 0 && face < cell_faces; ++face) {
         const int64_t corners = at < size ? faces->GetValue(at++) : -1;
         at = corners < 0 || corners > size - at ? -1 : at + corners;
       }
-      if (at < 0) break;
+      if (at < 0)
+        break;
     }
-    if (faces && at == size) return true;
+    if (faces && at == size)
+      return true;
     vtkErrorMacro("the faces of the polyhedra in piece " << this->Piece << " don't match their offsets");
     return false;
   }
@@ -695,19 +716,27 @@ void read_vtu(const Reading &reading, Contents *contents) {
     reader->UpdateInformation();
     const int count = std::max(reader->pieces(), 1);
     for (int i = 0; i < count; ++i) {
-      if (!reader->UpdatePiece(i, count, 0)) break; // has been said why
+      if (!reader->UpdatePiece(i, count, 0))
+        break; // has been said why
       reader->mend(reader->GetOutput());
       grids.push_back(Grid::New());
       grids.back()->ShallowCopy(reader->GetOutput());
     }
     return grids;
   });
-  for (const Grid &grid : pieces) add_grid(reading, reading.block, grid, contents);
+  for (const Grid &grid : pieces)
+    add_grid(reading, reading.block, grid, contents);
 }
 
-void read_vti(const Reading &reading, Contents *contents) { read_structured<vtkXMLImageDataReader>(reading, contents); }
-void read_vtr(const Reading &reading, Contents *contents) { read_structured<vtkXMLRectilinearGridReader>(reading, contents); }
-void read_vts(const Reading &reading, Contents *contents) { read_structured<vtkXMLStructuredGridReader>(reading, contents); }
+void read_vti(const Reading &reading, Contents *contents) {
+  read_structured<vtkXMLImageDataReader>(reading, contents);
+}
+void read_vtr(const Reading &reading, Contents *contents) {
+  read_structured<vtkXMLRectilinearGridReader>(reading, contents);
+}
+void read_vts(const Reading &reading, Contents *contents) {
+  read_structured<vtkXMLStructuredGridReader>(reading, contents);
+}
 
 vtkSmartPointer<vtkPolyData> read_vtp(const char *path) {
   return read<Checked<vtkXMLPolyDataReader>>(path, "");
