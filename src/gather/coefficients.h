@@ -95,7 +95,7 @@ TC_INLINE TcVec tc_groups_load(const TcRows *rows, int64_t first) {
 
 /* One value of each lane: that of this column in the lanes' rows. */
 TC_INLINE TcVec tc_groups_gather(const TcRows *rows, const int64_t row[TC_LANES], int column) {
-  TcVec v;
+  TcVec v = tc_set(0);
   if (rows->is_double) {
     TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) TC_AT(v, l) = ((const double *)rows->data)[row[l] + column];
   } else {
