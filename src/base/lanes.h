@@ -17,8 +17,9 @@
 #error "TC_LANES and TC_SINGLE say what lanes there are"
 #endif
 
-#define TC_INLINE      static inline __attribute__((always_inline))
-#define TC_NOINLINE    static __attribute__((noinline))
+#define TC_INLINE static inline __attribute__((always_inline))
+/* Each file that is compiled for lanes uses some of these. */
+#define TC_NOINLINE    static __attribute__((noinline, unused))
 #define TC_LIKELY(x)   __builtin_expect(!!(x), 1)
 #define TC_UNLIKELY(x) __builtin_expect(!!(x), 0)
 

@@ -24,8 +24,10 @@ static struct {
   int kept_count, kept_capacity;
 } messages;
 
+enum { MESSAGE_ERROR, MESSAGE_WARNING, MESSAGE_NOTE };
+
 typedef struct Message {
-  enum { MESSAGE_ERROR, MESSAGE_WARNING, MESSAGE_NOTE } kind;
+  int kind;
   char *place, *text;
 } Message;
 

@@ -9,6 +9,9 @@ const _Alignas(64) double tc_special_f64[2 * TC_SPECIAL_ROWS][TC_SPECIAL_TERMS] 
 };
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wfloat-conversion"
+#ifdef __clang__
+#pragma GCC diagnostic ignored "-Wimplicit-float-conversion"
+#endif
 const _Alignas(64) float tc_special_f32[2 * TC_SPECIAL_ROWS][TC_SPECIAL_TERMS] = {
 #include "optics/special_table.h"
 };

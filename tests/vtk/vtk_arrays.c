@@ -316,8 +316,8 @@ static void test_no_lookup_table(void **state) {
 /* A field with something that only OpenFOAM itself understands: the others are read, of each step. */
 static void test_openfoam(void **state) {
   static const char *const bad[] = {
-      "dimensions [0 0 0 1 0 0 0];\ninternalField uniform 1;\nboundaryField\n{\n #includeEtc "
-      "\"caseDicts/setConstraintTypes\"\n}\n",
+      ("dimensions [0 0 0 1 0 0 0];\ninternalField uniform 1;\nboundaryField\n{\n"
+       " #includeEtc \"caseDicts/setConstraintTypes\"\n}\n"),
       "dimensions [0 0 0 1 0 0 0];\ninternalField #codeStream\n{\n code #{ x #};\n};\nboundaryField\n{\n}\n",
       "#include \"nowhere\"\ndimensions [0 0 0 1 0 0 0];\ninternalField uniform $value;\nboundaryField\n{\n}\n",
       "dimensions [0 0 0 1 0 0 0];\ninternalField nonuniform List<scalar>\n3\n(\n1\n2\n3\n)\n;\nboundaryField\n{\n}\n",
