@@ -102,7 +102,8 @@ typedef struct TetcastRenderDesc {
                      * than this from the exact picture's. Absolute, in the units of the channel (alpha: 1 is opaque).
                      * Only with the exact integrator. Rays are walked in single precision where a bound on what that
                      * costs allows it: with a point field and a transfer function without jumps, AVX2 or AVX-512, from
-                     * 1e-3 or 1e-4 on, depending on how steep both are. */
+                     * 1e-3 or 1e-4 on, depending on how steep both are. The bound takes it that cells don't overlap:
+                     * where a mesh folds over itself, single precision may be further off. */
   TetcastProgress progress;
 } TetcastRenderDesc;
 
