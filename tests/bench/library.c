@@ -39,7 +39,7 @@ void library_open(Library *library, const char *path) {
 
 static void must_be_ok(const Stage *stage, TetcastStatus status, const char *what) {
   if (status != TETCAST_OK) {
-    fprintf(stderr, "tetcast_bench: %s: %s failed\n", stage->library->path, what);
+    fprintf(stderr, "tetcast_bench: %s: %s failed\n", stage->api->path, what);
     exit(1);
   }
 }
@@ -50,12 +50,12 @@ static void print_message(void *user, TetcastSeverity severity, const char *text
   const Stage *stage = user;
   (void)severity;
   if (!stage->quiet) {
-    fprintf(stderr, "tetcast_bench: %s: %s\n", stage->library->path, text);
+    fprintf(stderr, "tetcast_bench: %s: %s\n", stage->api->path, text);
   }
 }
 
 static TetcastField *make_field(const Stage *stage, const void *values, TetcastType type) {
-  const Library *library = stage->library;
+  const Library *library = stage->api;
   TetcastFieldDesc desc = library->field_desc_default();
   desc.values = (TetcastArray){.data = values, .type = type, .count = stage->mesh->vertex_count};
   TetcastField *field = NULL;
@@ -64,7 +64,7 @@ static TetcastField *make_field(const Stage *stage, const void *values, TetcastT
 }
 
 void stage_open(Stage *stage, const Library *library, const BenchMesh *mesh) {
-  *stage = (Stage){.library = library, .mesh = mesh};
+  *stage = (Stage){.api = library, .mesh = mesh};
   TetcastContextDesc context = library->context_desc_default();
   context.threads = 1;
   context.message = print_message;
@@ -83,7 +83,7 @@ void stage_open(Stage *stage, const Library *library, const BenchMesh *mesh) {
 }
 
 void stage_close(Stage *stage) {
-  const Library *library = stage->library;
+  const Library *library = stage->api;
   library->volume_destroy(&stage->volume);
   library->field_destroy(&stage->field);
   library->mesh_destroy(&stage->tet);
@@ -93,7 +93,7 @@ void stage_close(Stage *stage) {
 /* ── a picture ── */
 
 static TetcastFrame *make_frame(const Stage *stage, int pixels, int groups) {
-  TetcastFrameDesc desc = stage->library->frame_desc_default();
+  TetcastFrameDesc desc = stage->api->frame_desc_default();
   desc.width = desc.height = pixels;
   desc.type = TETCAST_TYPE_FLOAT64;
   if (groups > 0) {
@@ -101,19 +101,19 @@ static TetcastFrame *make_frame(const Stage *stage, int pixels, int groups) {
     desc.groups = groups;
   }
   TetcastFrame *frame = NULL;
-  must_be_ok(stage, stage->library->frame_create(stage->context, &desc, &frame), "frame_create");
+  must_be_ok(stage, stage->api->frame_create(stage->context, &desc, &frame), "frame_create");
   return frame;
 }
 
 static void begin(Picture *picture, Stage *stage, int pixels, int groups) {
-  const Library *library = stage->library;
+  const Library *library = stage->api;
   *picture = (Picture){.stage = stage, .pixels = pixels, .groups = groups, .desc = library->render_desc_default()};
   must_be_ok(stage, library->scene_create(stage->context, stage->volume, &picture->scene), "scene_create");
   picture->frame = make_frame(stage, pixels, groups);
 }
 
 void picture_open_transfer(Picture *picture, Stage *stage, const Transfer *transfer, int pixels) {
-  const Library *library = stage->library;
+  const Library *library = stage->api;
   begin(picture, stage, pixels, 0);
   if (library->scene_set_field) {
     must_be_ok(stage, library->scene_set_field(picture->scene, stage->field), "scene_set_field");
@@ -137,7 +137,7 @@ static void fill_group(const BenchMesh *mesh, int group, double *extinction, dou
 }
 
 void picture_open_groups(Picture *picture, Stage *stage, int groups, int pixels) {
-  const Library *library = stage->library;
+  const Library *library = stage->api;
   begin(picture, stage, pixels, groups);
   must(groups <= MOST_GROUPS, "too many groups");
   const size_t count = (size_t)stage->mesh->vertex_count;
@@ -163,7 +163,7 @@ void picture_open_groups(Picture *picture, Stage *stage, int groups, int pixels)
 }
 
 void picture_close(Picture *picture) {
-  const Library *library = picture->stage->library;
+  const Library *library = picture->stage->api;
   library->frame_destroy(&picture->frame);
   library->scene_destroy(&picture->scene);
 }
@@ -173,7 +173,7 @@ bool picture_use(Picture *picture, const char *isa) {
   enum { MOST = 8 };
   const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
   Stage *stage = picture->stage;
-  const Library *library = stage->library;
+  const Library *library = stage->api;
   TetcastFrame *frame = make_frame(stage, 1, picture->groups);
   bool found = false;
   stage->quiet = true; /* of the first number that is none */
@@ -191,7 +191,7 @@ bool picture_use(Picture *picture, const char *isa) {
 }
 
 double picture_draw(Picture *picture, const TetcastCamera *camera) {
-  const Library *library = picture->stage->library;
+  const Library *library = picture->stage->api;
   const Clock start = clock_now();
   TetcastStatus status = library->scene_render(picture->scene, camera, &picture->desc, picture->frame, &picture->stats);
   const double cpu = clock_since(start).cpu;
@@ -211,7 +211,7 @@ static double difference(const double *a, const double *b, size_t count) {
 }
 
 double picture_difference(const Picture *a, const Picture *b) {
-  const Library *of_a = a->stage->library, *of_b = b->stage->library;
+  const Library *of_a = a->stage->api, *of_b = b->stage->api;
   const size_t count = (size_t)a->pixels * (size_t)a->pixels;
   double largest = difference(of_a->frame_pixels(a->frame), of_b->frame_pixels(b->frame), 4 * count);
   if (a->groups > 0 && !isnan(largest)) {

@@ -59,7 +59,7 @@ void library_open(Library *library, const char *path);
 
 /* A mesh in a library, ready to be drawn by one thread. The mesh's arrays and the library must stay. */
 typedef struct Stage {
-  const Library *library;
+  const Library *api;
   const BenchMesh *mesh;
   bool quiet; /* no messages of the library */
   TetcastContext *context;
