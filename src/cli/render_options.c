@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "render_table.h"
+#include "render_options.h"
 
 #include <float.h>
 #include <math.h>

@@ -5,6 +5,7 @@
 #define TETCAST_CLI_RENDER_OPTIONS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include <jansson.h>
@@ -150,5 +151,35 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
 /* Notes that the current source gives an option, and takes back what excludes it of another source. NULL, or the name
  * of an option of the same source that excludes it. */
 const char *render_options_claim(RenderOptions *options, OptionId id);
+
+/* ── the table, for what reads the command line ── */
+
+typedef enum OptionKind { KIND_TEXT, KIND_PATH, KIND_NUMBERS, KIND_INTEGERS, KIND_CHOICE, KIND_FLAG } OptionKind;
+
+#define BIT(id)    (UINT64_C(1) << (id))
+#define AT(member) offsetof(RenderOptions, member)
+
+typedef struct RenderRow {
+  const char *name;
+  OptionKind kind;
+  size_t at;                /* where the value goes in RenderOptions */
+  int least, most;          /* how many numbers */
+  double low, high;         /* bounds of each */
+  const char *const *names; /* of a choice */
+  uint64_t excludes;
+  RenderCommand only; /* of this command alone, 0: of both */
+  const char *form;   /* what is expected */
+} RenderRow;
+
+extern const RenderRow render_table[OPTION_COUNT];
+
+bool render_option_of_command(OptionId id, RenderCommand command);
+
+/* What the name of a picture ends with. */
+bool render_option_has_extension(const char *path, const char *extension);
+bool render_option_is_tiff(const char *path);
+
+/* Whether --groups is given and says yes. */
+bool render_options_groups(const RenderOptions *options);
 
 #endif

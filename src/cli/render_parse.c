@@ -12,7 +12,6 @@
 #include "cli.h"
 #include "color.h"
 #include "completion.h"
-#include "render_table.h"
 #include "scene_file.h"
 #include "view.h"
 

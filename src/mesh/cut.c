@@ -7,7 +7,6 @@
 
 #include "base/parallel.h"
 #include "mesh/cut.h"
-#include "mesh/cut_result.h"
 
 enum { GRAIN = 4096, BATCH = 32 };
 

@@ -160,4 +160,14 @@ TcPointKey tc_lattice_key(const TcLattice *lattice, const int at[3], const uint3
 typedef void TcPartFunction(void *user, TcShapeName shape, const uint32_t *points);
 void tc_lattice_parts(const TcLattice *lattice, TcPartFunction *use, void *user);
 
+/* What cutting makes. */
+struct TetcastCut {
+  TetcastContext *context;
+  int64_t vertex_count; /* of the input */
+  int32_t (*tetrahedra)[4];
+  int32_t *sources; /* NULL if not wanted */
+  TcPoints points;
+  TetcastCutInfo info;
+};
+
 #endif

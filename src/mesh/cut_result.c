@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "mesh/cut_result.h"
+#include "mesh/cut.h"
 
 void tc_cut_destroy(TetcastCut *cut) {
   if (!cut)

@@ -102,6 +102,27 @@ done <<END
 $(awk '$1 == $2' "$reached")
 END
 
+# A file and its header are one; no two such include each other, by whatever way round.
+while read -r one other && [ -n "$one" ]; do
+  complain "$one and $other include each other"
+done <<END
+$(awk '
+  function pair(file) { sub(/[.][^.]*$/, "", file); return file }
+  function follow(top, from,   i, to) {
+    for (i = 1; i <= count[from]; ++i) {
+      to = next_of[from, i]
+      if ((top, to) in seen) continue
+      seen[top, to] = 1
+      follow(top, to)
+    }
+  }
+  $1 == $3 && $2 ~ /^src/ { a = pair($1); b = pair($2); if (a != b) next_of[a, ++count[a]] = b }
+  END {
+    for (top in count) follow(top, top)
+    for (both in seen) { split(both, e, SUBSEP); if (e[1] < e[2] && (e[2], e[1]) in seen) print e[1], e[2] }
+  }' "$reached")
+END
+
 while read -r file to _ && [ -n "$file" ]; do
   complain "$file includes $to: by a path of its own"
 done <<END
