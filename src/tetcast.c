@@ -618,6 +618,85 @@ TetcastBlend tetcast_scene_blend(const TetcastScene *scene) {
   return scene->blend;
 }
 
+static bool is_color(const double color[3]) {
+  for (int k = 0; k < 3; ++k) {
+    if (!(color[k] >= 0) || !isfinite(color[k]))
+      return false;
+  }
+  return true;
+}
+
+TetcastStatus tetcast_scene_set_isosurfaces(TetcastScene *scene, const TetcastIsosurface *isosurfaces, int count) {
+  TC_ENTRY;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
+  TetcastContext *context = scene->context;
+  if (count < 0 || count > TETCAST_MAX_ISOSURFACES)
+    return ARGUMENT(context, "%d isosurfaces: at most %d are possible", count, TETCAST_MAX_ISOSURFACES);
+  if (count > 0)
+    CHECK_GIVEN(context, isosurfaces);
+  for (int i = 0; i < count; ++i) {
+    const TetcastIsosurface *surface = &isosurfaces[i];
+    if (!isfinite(surface->value))
+      return ARGUMENT(context, "isosurface %d: the value %g is not finite", i, surface->value);
+    if (!is_color(surface->color))
+      return ARGUMENT(context, "isosurface %d: a colour is negative or not finite", i);
+    if (!(surface->opacity >= 0 && surface->opacity <= 1))
+      return ARGUMENT(context, "isosurface %d: an opacity of %g, must be in [0, 1]", i, surface->opacity);
+  }
+  return tc_scene_set_isosurfaces(scene, isosurfaces, count);
+}
+
+TetcastShadingDesc tetcast_shading_desc_default(void) {
+  return (TetcastShadingDesc){.cookie = TC_COOKIE,
+                              .shade = TETCAST_SHADE_SURFACES,
+                              .ambient = 0.2,
+                              .diffuse = 0.8,
+                              .specular = 0.2,
+                              .exponent = 30};
+}
+
+static TetcastStatus check_light(TetcastContext *context, const TetcastLight *light, int i) {
+  const double *d = light->direction;
+  if (!isfinite(d[0]) || !isfinite(d[1]) || !isfinite(d[2]))
+    return ARGUMENT(context, "light %d: the direction is not finite", i);
+  if (d[0] == 0 && d[1] == 0 && d[2] == 0)
+    return ARGUMENT(context, "light %d: the direction is 0, 0, 0", i);
+  return is_color(light->color) ? TETCAST_OK : ARGUMENT(context, "light %d: a colour is negative or not finite", i);
+}
+
+TetcastStatus tetcast_scene_set_shading(TetcastScene *scene, const TetcastShadingDesc *desc) {
+  TC_ENTRY;
+  const TetcastShadingDesc defaults = tetcast_shading_desc_default();
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
+  if (!desc)
+    desc = &defaults;
+  TetcastContext *context = scene->context;
+  CHECK_DESC(context, desc);
+  if ((unsigned)desc->shade > TETCAST_SHADE_SURFACES)
+    return ARGUMENT(context, "unknown shading %d", (int)desc->shade);
+  if ((unsigned)desc->normals > TETCAST_NORMALS_FLAT)
+    return ARGUMENT(context, "unknown normals %d", (int)desc->normals);
+  const double shares[3] = {desc->ambient, desc->diffuse, desc->specular};
+  if (!is_color(shares))
+    return ARGUMENT(context, "shading: ambient %g, diffuse %g, specular %g, must be at least 0 and finite", shares[0],
+                    shares[1], shares[2]);
+  if (!(desc->exponent >= 1 && desc->exponent <= 10000))
+    return ARGUMENT(context, "shading: an exponent of %g, must be in [1, 10000]", desc->exponent);
+  if (desc->light_count < 0 || desc->light_count > TETCAST_MAX_LIGHTS)
+    return ARGUMENT(context, "%d lights: at most %d are possible", desc->light_count, TETCAST_MAX_LIGHTS);
+  if (desc->light_count > 0)
+    CHECK_GIVEN(context, desc->lights);
+  for (int i = 0; i < desc->light_count; ++i) {
+    const TetcastStatus status = check_light(context, &desc->lights[i], i);
+    if (status)
+      return status;
+  }
+  scene->lighting = tc_lighting_of(desc);
+  return TETCAST_OK;
+}
+
 TetcastCoefficientsDesc tetcast_coefficients_desc_default(void) {
   return (TetcastCoefficientsDesc){.cookie = TC_COOKIE};
 }
@@ -722,8 +801,20 @@ static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderD
     return ARGUMENT(context, "with coefficients there is only the exact integrator");
   if (!c && !scene->values)
     return ARGUMENT(context, "the scene has no field yet");
-  if (!c && !scene->transfer)
+  if (scene->isosurface_count > 0) {
+    if (c)
+      return ARGUMENT(context, "with coefficients there are no isosurfaces");
+    if (scene->blend)
+      return ARGUMENT(context, "isosurfaces are seen in the blend mode composite only");
+    if (!exact)
+      return ARGUMENT(context, "isosurfaces are seen by the exact integrator only");
+    if (error)
+      return ARGUMENT(context, "with isosurfaces there is no channel for the error");
+    if (scene->values->association == TETCAST_CELL)
+      return ARGUMENT(context, "isosurfaces need a field of points or corners, and this one is constant in each cell");
+  } else if (!c && !scene->transfer) {
     return ARGUMENT(context, "the scene has no transfer function yet");
+  }
   if (!exact && (desc->tolerance > 0 || error)) {
     return ARGUMENT(context, "only the exact integrator knows its error: no %s with another",
                     error ? "channel for the error" : "tolerance");

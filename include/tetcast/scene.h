@@ -10,6 +10,8 @@
 #include <tetcast/field.h>
 #include <tetcast/frame.h>
 #include <tetcast/integrator.h>
+#include <tetcast/isosurface.h>
+#include <tetcast/shading.h>
 #include <tetcast/transfer_function.h>
 #include <tetcast/volume.h>
 
@@ -60,6 +62,20 @@ TETCAST_API TetcastStatus tetcast_scene_set_blend(TetcastScene *scene, TetcastBl
 
 /* The scene's blend mode. */
 TETCAST_API TetcastBlend tetcast_scene_blend(const TetcastScene *scene);
+
+/* Sets the scene's isosurfaces in place of those it had; `isosurfaces` is copied, and may be NULL when `count` is 0. At
+ * most TETCAST_MAX_ISOSURFACES, no two of one value (TETCAST_ERROR_ARGUMENT). A scene that has isosurfaces needs a
+ * field of points or corners (checked when it renders) but no transfer function; without one, surfaces are all there is
+ * to see. Isosurfaces are seen by the exact integrator in the blend mode composite; other ones are
+ * TETCAST_ERROR_ARGUMENT when rendering, and so is the channel of error bounds: where a surface is seen edge-on,
+ * rounding decides whether a ray meets it. Must not run while this scene renders. On error the scene keeps those it
+ * had. */
+TETCAST_API TetcastStatus tetcast_scene_set_isosurfaces(TetcastScene *scene, const TetcastIsosurface *isosurfaces,
+                                                        int count);
+
+/* Sets the light; `desc` may be NULL: as a new scene has it, the default. Must not run while this scene renders. On
+ * error the scene keeps what it had. */
+TETCAST_API TetcastStatus tetcast_scene_set_shading(TetcastScene *scene, const TetcastShadingDesc *desc);
 
 /* Extinction κ and emission j as they are, for one or several groups (of wavelength, of energy, …). Along a ray, each
  * group has

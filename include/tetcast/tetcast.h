@@ -11,8 +11,10 @@
 #include <tetcast/field.h>
 #include <tetcast/frame.h>
 #include <tetcast/integrator.h>
+#include <tetcast/isosurface.h>
 #include <tetcast/mesh.h>
 #include <tetcast/scene.h>
+#include <tetcast/shading.h>
 #include <tetcast/status.h>
 #include <tetcast/transfer_function.h>
 #include <tetcast/version.h>

@@ -15,16 +15,19 @@
 #include "cli.h"
 #include "color.h"
 #include "numbered.h"
+#include "surfaces.h"
 
 /* A picture is made by a transfer function or from coefficients. */
 #define DIRECT (BIT(OPTION_EXTINCTION) | BIT(OPTION_EMISSION) | BIT(OPTION_GROUPS))
 #define TRANSFER                                                                                                       \
   (BIT(OPTION_ARRAY) | BIT(OPTION_TRANSFER) | BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | BIT(OPTION_OPACITY_MODEL) |     \
-   BIT(OPTION_BLEND))
+   BIT(OPTION_BLEND) | BIT(OPTION_ISOSURFACE))
 
 /* Order of the library's enumerations. */
 static const char *const opacity_models[] = {"unit-distance", "vtk-unstructured", "ospray", NULL};
 static const char *const blends[] = {"composite", "maximum", "minimum", "average", "additive", NULL};
+static const char *const shades[] = {"none", "surfaces", NULL};
+static const char *const normals[] = {"smooth", "flat", NULL};
 static const char *const isas[] = {"auto", "scalar", "avx2", "avx512", NULL};
 static const char *const traversals[] = {"shell", "faces", NULL};
 static const char *const pixel_types[] = {"", "uint8", "uint16", "half", "float", "double", NULL};
@@ -61,6 +64,16 @@ const RenderRow render_table[OPTION_COUNT] = {
                        .form = "expected true or false"},
     [OPTION_BLEND] = {"blend", KIND_CHOICE, AT(blend), .names = blends, .excludes = DIRECT,
                       .form = "expected composite, maximum, minimum, average or additive"},
+    [OPTION_ISOSURFACE] =
+        {"isosurface", KIND_LIST, AT(isosurfaces), .most = TETCAST_MAX_ISOSURFACES, .excludes = DIRECT,
+         .form = "expected VALUE[:COLOUR][:OPACITY], a number, a name or #rrggbb or r,g,b, and a number from 0 to 1"},
+    [OPTION_SHADE] = {"shade", KIND_CHOICE, AT(shade), .names = shades, .form = "expected none or surfaces"},
+    [OPTION_NORMALS] = {"normals", KIND_CHOICE, AT(normals), .names = normals, .form = "expected smooth or flat"},
+    [OPTION_MATERIAL] = {"material", KIND_NUMBERS, AT(material), 4, 4, 0, 10000,
+                         .form = "expected ambient,diffuse,specular,exponent: four numbers from 0, the last from 1 to "
+                                 "10000"},
+    [OPTION_LIGHT] = {"light", KIND_LIST, AT(lights), .most = TETCAST_MAX_LIGHTS,
+                      .form = "expected x,y,z[:COLOUR]: where it comes from, not 0,0,0, and a name, #rrggbb or r,g,b"},
     [OPTION_EYE] = {"eye", KIND_NUMBERS, AT(eye), 3, 3, -DBL_MAX, DBL_MAX, .form = "expected three numbers x,y,z"},
     [OPTION_TARGET] = {"target", KIND_NUMBERS, AT(target), 3, 3, -DBL_MAX, DBL_MAX,
                        .form = "expected three numbers x,y,z"},
@@ -131,7 +144,16 @@ static void release_inputs(RenderOptions *options) {
   options->input_count = 0;
 }
 
+static void clear_list(TextList *list) {
+  for (int i = 0; i < list->count; i++)
+    free(list->text[i]);
+  free(list->text);
+  *list = (TextList){0};
+}
+
 void render_options_release(RenderOptions *options) {
+  clear_list(&options->isosurfaces);
+  clear_list(&options->lights);
   for (int id = 0; id < OPTION_COUNT; id++)
     if (render_table[id].kind == KIND_TEXT || render_table[id].kind == KIND_PATH)
       free(*(char **)((char *)options + render_table[id].at));
@@ -166,6 +188,10 @@ bool render_option_is_flag(OptionId id) {
   return render_table[id].kind == KIND_FLAG;
 }
 
+bool render_option_is_list(OptionId id) {
+  return render_table[id].kind == KIND_LIST;
+}
+
 const char *render_option_choice(OptionId id, int value) {
   return render_table[id].names[value];
 }
@@ -174,6 +200,8 @@ const char *render_options_claim(RenderOptions *options, OptionId id) {
   for (int other = 0; other < OPTION_COUNT; other++)
     if (options->source & render_table[id].excludes & BIT(other))
       return render_table[other].name;
+  if (render_option_is_list(id) && !(options->source & BIT(id))) /* of another source */
+    clear_list((TextList *)((char *)options + render_table[id].at));
   options->given = (options->given & ~render_table[id].excludes) | BIT(id);
   options->source |= BIT(id);
   return NULL;
@@ -292,6 +320,7 @@ static const char *set_numbers(OptionId id, void *at, const OptionValue *value) 
         (render_table[id].kind == KIND_INTEGERS && numbers[i] != floor(numbers[i])))
       return render_table[id].form;
   if ((id == OPTION_SIZE && numbers[0] * numbers[1] > 0x1p30) || (id == OPTION_RANGE && numbers[0] > numbers[1]) ||
+      (id == OPTION_MATERIAL && numbers[3] < 1) ||
       (id == OPTION_UP && numbers[0] == 0 && numbers[1] == 0 && numbers[2] == 0))
     return render_table[id].form;
   memcpy(at, numbers, sizeof(double) * (size_t)value->count);
@@ -328,6 +357,24 @@ static const char *set_choice(OptionId id, void *at, const OptionValue *value) {
   return render_table[id].form;
 }
 
+static const char *add_to_list(OptionId id, TextList *list, const OptionValue *value) {
+  TetcastIsosurface isosurface;
+  TetcastLight light;
+  bool colored;
+  if (!value->text || !(id == OPTION_LIGHT ? surfaces_parse_light(value->text, &light)
+                                           : surfaces_parse(value->text, &isosurface, &colored)))
+    return render_table[id].form;
+  if (list->count == render_table[id].most)
+    return "there are too many of them";
+  char **longer = cli_allocate(sizeof *longer * (size_t)(list->count + 1));
+  if (list->count > 0)
+    memcpy(longer, list->text, sizeof *longer * (size_t)list->count);
+  longer[list->count] = cli_duplicate(value->text);
+  free(list->text);
+  *list = (TextList){longer, list->count + 1};
+  return NULL;
+}
+
 static const char *set_range(RenderOptions *options, const OptionValue *value) {
   const bool step = value->text && !strcmp(value->text, "step"), series = value->text && !strcmp(value->text, "series");
   const char *reason = step || series ? NULL : set_numbers(OPTION_RANGE, options->range, value);
@@ -348,6 +395,8 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
     return set_numbers(id, at, value);
   case KIND_CHOICE:
     return set_choice(id, at, value);
+  case KIND_LIST:
+    return add_to_list(id, at, value);
   case KIND_FLAG:
     *(int *)at = value->count == 1 && value->numbers[0] != 0;
     return NULL;

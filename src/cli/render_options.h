@@ -31,6 +31,11 @@ typedef enum OptionId {
   OPTION_EMISSION,
   OPTION_GROUPS,
   OPTION_BLEND,
+  OPTION_ISOSURFACE,
+  OPTION_SHADE,
+  OPTION_NORMALS,
+  OPTION_MATERIAL,
+  OPTION_LIGHT,
   OPTION_EYE,
   OPTION_TARGET,
   OPTION_UP,
@@ -63,6 +68,12 @@ typedef enum RenderCommand { COMMAND_RENDER = 1, COMMAND_CONVERGE = 2 } RenderCo
 /* What --range says. */
 typedef enum RangeKind { RANGE_DEFAULT, RANGE_FIXED, RANGE_STEP, RANGE_SERIES } RangeKind;
 
+/* What an option has that may be given several times. */
+typedef struct TextList {
+  char **text; /* [count] */
+  int count;
+} TextList;
+
 typedef struct RenderOptions {
   RenderCommand command;
   /* NULL unless given */
@@ -72,10 +83,12 @@ typedef struct RenderOptions {
   int input_count;
   json_t *transfer_object; /* of a scene file; instead of transfer */
   double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], tolerance, threads, repeat;
+  double material[4];
+  TextList isosurfaces, lights;
   double merge_tolerance; /* negative unless given */
   RangeKind range_kind;   /* RANGE_FIXED: options->range */
   double subdivide;
-  int opacity_model, blend, traversal, isa, pixel_type; /* values of the library's enumerations */
+  int opacity_model, blend, shade, normals, traversal, isa, pixel_type; /* values of the library's enumerations */
   int cell_to_point, no_displacement, quiet, strict, resume, refine, no_plots, groups;
   uint64_t given;  /* bit 1 << OptionId: has a value from command line or scene file */
   uint64_t source; /* the same for the source being read alone */
@@ -101,6 +114,8 @@ OptionId render_option_find(const char *key);
 const char *render_option_key(OptionId id);
 bool render_option_is_path(OptionId id);
 bool render_option_is_flag(OptionId id);
+/* Whether it may be given several times, each adding to what it has. */
+bool render_option_is_list(OptionId id);
 
 /* The name of a choice's value. */
 const char *render_option_choice(OptionId id, int value);
@@ -145,7 +160,7 @@ bool render_options_floating(const RenderOptions *options);
  * False: they are no such series, and nothing is set. */
 bool render_options_set_inputs(RenderOptions *options, int count, const char *const *paths);
 
-/* Sets an option. NULL, or why the value can't be (static storage or inside the options). */
+/* Sets an option, or adds to its list. NULL, or why the value can't be (static storage or inside the options). */
 const char *render_options_set(RenderOptions *options, OptionId id, const OptionValue *value);
 
 /* Notes that the current source gives an option, and takes back what excludes it of another source. NULL, or the name
@@ -154,7 +169,15 @@ const char *render_options_claim(RenderOptions *options, OptionId id);
 
 /* ── the table, for what reads the command line ── */
 
-typedef enum OptionKind { KIND_TEXT, KIND_PATH, KIND_NUMBERS, KIND_INTEGERS, KIND_CHOICE, KIND_FLAG } OptionKind;
+typedef enum OptionKind {
+  KIND_TEXT,
+  KIND_PATH,
+  KIND_NUMBERS,
+  KIND_INTEGERS,
+  KIND_CHOICE,
+  KIND_FLAG,
+  KIND_LIST
+} OptionKind;
 
 #define BIT(id)    (UINT64_C(1) << (id))
 #define AT(member) offsetof(RenderOptions, member)

@@ -22,6 +22,18 @@ static const char *command_name(const RenderOptions *options) {
 /* What of coefficients and what of a transfer function doesn't go together. NULL: nothing. */
 static const char *find_mixture(const RenderOptions *options) {
   const uint32_t channels = render_options_channels(options);
+  if (render_options_given(options, OPTION_ISOSURFACE)) {
+    if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
+      return "--isosurface: needs --blend composite";
+    if (options->integrator && strcmp(options->integrator, "exact"))
+      return "--integrator: with --isosurface there is only exact";
+    if (channels & TETCAST_CHANNEL_ERROR)
+      return "--channels error: not possible with --isosurface; where a surface is seen edge-on, rounding decides "
+             "whether "
+             "a ray meets it";
+  } else if (options->given & (BIT(OPTION_SHADE) | BIT(OPTION_NORMALS) | BIT(OPTION_MATERIAL) | BIT(OPTION_LIGHT))) {
+    return "--shade, --normals, --material, --light: need --isosurface, on which the light falls";
+  }
   if (!render_options_direct(options)) {
     if (render_options_groups(options))
       return "--groups: needs --extinction or --emission";
@@ -199,6 +211,9 @@ static int check_use(const RenderOptions *options) {
         "converge",
         "--blend %s: values along rays are always exact, there is nothing to compare; a report is about composite",
         render_option_choice(OPTION_BLEND, options->blend));
+  if (options->command == COMMAND_CONVERGE && render_options_given(options, OPTION_ISOSURFACE))
+    return cli_usage_error("converge",
+                           "--isosurface: a report is about what integrators make of the volume, without surfaces");
   char *mistaken = options->input ? scene_file_mistaken(options->input) : NULL;
   const int result = mistaken ? cli_usage_error(command_name(options), "%s", mistaken) : -1;
   free(mistaken);

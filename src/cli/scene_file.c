@@ -10,6 +10,7 @@
 #include "cli.h"
 #include "file.h"
 #include "json.h"
+#include "surfaces.h"
 
 /* Several files are the steps of a series. NULL, or what is wrong. */
 static const char *set_inputs(RenderOptions *options, const json_t *list) {
@@ -51,6 +52,11 @@ static bool set_value(RenderOptions *options, OptionId id, const char *key, cons
   } else if (id == OPTION_TRANSFER && json_is_object(json)) {
     json_decref(options->transfer_object);
     options->transfer_object = json_deep_copy(json);
+  } else if (render_option_is_list(id) && json_is_array(json)) {
+    for (size_t i = 0; !reason && i < json_array_size(json); i++) {
+      value.text = json_string_value(json_array_get(json, i));
+      reason = render_options_set(options, id, &value);
+    }
   } else if (id == OPTION_INPUT && json_is_array(json)) {
     reason = set_inputs(options, json);
   } else {
@@ -202,8 +208,29 @@ static json_t *input_value(const RenderOptions *options) {
   return value;
 }
 
+static json_t *text_array(const TextList *list) {
+  json_t *array = json_array();
+  for (int i = 0; i < list->count; i++)
+    json_array_append_new(array, json_string(list->text[i]));
+  return array;
+}
+
+static void write_surfaces(json_t *scene, const RenderOptions *options) {
+  if (!render_options_given(options, OPTION_ISOSURFACE))
+    return;
+  json_object_set_new(scene, "isosurface", text_array(&options->isosurfaces));
+  if (render_options_given(options, OPTION_SHADE))
+    json_object_set_new(scene, "shade", json_string(render_option_choice(OPTION_SHADE, options->shade)));
+  if (render_options_given(options, OPTION_NORMALS))
+    json_object_set_new(scene, "normals", json_string(render_option_choice(OPTION_NORMALS, options->normals)));
+  if (render_options_given(options, OPTION_MATERIAL))
+    json_object_set_new(scene, "material", cli_json_array(options->material, 4));
+  if (options->lights.count > 0)
+    json_object_set_new(scene, "light", text_array(&options->lights));
+}
+
 bool scene_file_write(const RenderOptions *options, const char *array, const TetcastCamera *camera,
-                      const TetcastTransferFunction *transfer_function) {
+                      const TetcastTransferFunction *transfer_function, const double range[2]) {
   json_t *scene = json_object();
   /* Names come from the file system and the data, and JSON takes UTF-8 only. */
   int failed = json_object_set_new(scene, "input", input_value(options));
@@ -232,7 +259,10 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
     json_decref(scene);
     return false;
   }
-  if (transfer_function) {
+  if (surfaces_alone(options)) {
+    json_object_set_new(scene, "preset", json_string(render_options_preset(options)));
+    json_object_set_new(scene, "range", range ? cli_json_array(range, 2) : json_string("step"));
+  } else if (transfer_function) {
     json_object_set_new(scene, "transfer", transfer_object(transfer_function));
   } else if (!render_options_direct(options)) {
     json_object_set_new(scene, "preset", json_string(render_options_preset(options)));
@@ -242,6 +272,7 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
     json_object_set_new(scene, "groups", json_boolean(options->groups));
   if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
     json_object_set_new(scene, "blend", json_string(render_option_choice(OPTION_BLEND, options->blend)));
+  write_surfaces(scene, options);
   json_object_set_new(scene, "camera", camera_object(camera));
   json_object_set_new(scene, "size", size_array(options->size));
   json_object_set_new(scene, "samples", json_integer((json_int_t)options->samples));

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli.h"
+#include "surfaces.h"
 
 /* A pixel shows something from the first level of eight bits on, and is opaque from the last. */
 static const double visible = 1.0 / 255, opaque = 254.5 / 255;
@@ -257,6 +258,8 @@ static char *explain_blank(const Probe *probe, const Look *look) {
     return cli_duplicate("what is there has the colours of the background");
   if (render_options_blend(&run->options) != TETCAST_BLEND_COMPOSITE)
     return cli_duplicate("what the camera sees is too small for these pixels");
+  if (surfaces_alone(&run->options))
+    return cli_duplicate("no isosurface lies in what the camera sees, or all of them are transparent");
   const double extinction = largest_extinction(run, run->stage.range);
   if (!(extinction > 0)) {
     char *support = explain_support(run);
@@ -378,8 +381,9 @@ char *sight_fault(const Run *run) {
   if (direct) /* what is not 0 but too dark is told apart */
     blank = look.most_color == 0 && (data ? look.most_alpha == 0 : look.most_alpha < visible);
   const bool projected =
-      render_options_blend(&run->options) != TETCAST_BLEND_COMPOSITE; /* in which nothing hides anything */
-  const bool solid = !data && !projected && look.seen && !look.translucent;
+      render_options_blend(&run->options) != TETCAST_BLEND_COMPOSITE;           /* in which nothing hides anything */
+  const bool surfaces = render_options_given(&run->options, OPTION_ISOSURFACE); /* which may well be opaque */
+  const bool solid = !data && !projected && !surfaces && look.seen && !look.translucent;
   const double *bounds = run->stage.info.bounds;
   Probe probe = {.run = run};
   for (int k = 0; k < 3; k++)

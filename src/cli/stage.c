@@ -7,6 +7,7 @@
 
 #include "cli.h"
 #include "progress.h"
+#include "surfaces.h"
 #include "transfer_file.h"
 #include "view.h"
 
@@ -237,14 +238,17 @@ static TetcastStatus set_transfer_function(Stage *stage, const RenderOptions *op
   if (!stage->transfer_function) {
     if (render_options_range(options) == RANGE_FIXED)
       range = options->range;
+    memcpy(stage->shown, range, sizeof stage->shown);
     const bool labelled = stage->uniform && stage->array;
     status = labelled ? matter_shade(stage->context, stage->scene, &stage->matter, options->preset, range,
                                      &stage->transfer_function)
                       : tetcast_scene_create_preset(stage->scene, render_options_preset(options), range[0], range[1],
                                                     &stage->transfer_function);
   }
-  if (status == TETCAST_OK)
+  if (status == TETCAST_OK && !surfaces_alone(options))
     status = tetcast_scene_set_transfer_function(stage->scene, stage->transfer_function);
+  if (status == TETCAST_OK)
+    status = surfaces_set(stage->scene, options, stage->transfer_function, stage->range);
   return status;
 }
 

@@ -21,6 +21,7 @@ typedef struct Stage {
   TetcastTransferFunction *transfer_function;
   TetcastScene *scene;
   TetcastCamera camera;
+  double shown[2];   /* the range of the colour map, where that was made for one */
   double range[2];   /* of the field's finite values */
   int64_t nonfinite; /* how many of its values are not finite */
   char *array;       /* what was read, as --array would name it; NULL: coefficients, or uniform matter without labels */

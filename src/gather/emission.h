@@ -10,25 +10,28 @@
 
 #include "gather/pieces.h"
 #include "gather/seam.h"
+#include "gather/surfaces.h"
 #include "optics/segment_lanes.h"
 
 typedef struct TcEmission {
   TcVec block_color[3], block_depth, block_transmittance; /* of the block under way */
   TcVec before;                                           /* optical depth of the finished blocks */
   TcLanePieces piece;                                     /* kept from packet to packet */
-  TcVec moved; /* with TC_BOUND: what is off by where rays meet faces; single precision: Σ spread */
-  int parts;   /* of the block under way */
+  TcVec moved;     /* with TC_BOUND: what is off by where rays meet faces; single precision: Σ spread */
+  int parts;       /* of the block under way */
+  TcLayers layers; /* with TC_SURFACES */
   _Alignas(64) double color[3][TC_LANES], depth[TC_LANES], transmittance[TC_LANES]; /* of the finished blocks */
 } TcEmission;
 
 TC_INLINE void tc_emission_begin(const TcGatherJob *job, TcEmission *e) {
-  (void)job;
   for (int k = 0; k < 3; ++k)
     e->block_color[k] = tc_set(0);
   e->block_depth = e->before = tc_set(0);
   e->block_transmittance = tc_set(1);
   e->moved = tc_set(0);
   e->parts = 0;
+  if (job->surfaces)
+    tc_layers_begin(&e->layers);
   memset(e->color, 0, sizeof e->color);
   memset(e->depth, 0, sizeof e->depth);
   for (int l = 0; l < TC_LANES; ++l)
@@ -57,7 +60,8 @@ TC_NOINLINE void tc_emission_end_block(const unsigned on, TcEmission *e) {
     const TcVec transmittance = tc_load(e->transmittance);
     for (int k = 0; k < 3; ++k)
       tc_store(e->color[k], tc_madd(transmittance, e->block_color[k], tc_load(e->color[k])));
-    tc_store(e->transmittance, tc_exp(-e->before));
+    const TcVec through = tc_exp(-e->before);
+    tc_store(e->transmittance, on & TC_SURFACES ? through * e->layers.veil : through);
   }
 #endif
   for (int k = 0; k < 3; ++k)
@@ -150,12 +154,10 @@ TC_NOINLINE void tc_emission_parts(const unsigned on, const TcGatherJob *job, Tc
   }
 }
 
-TC_INLINE void tc_emission_segment(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask,
-                                   const TcPassage *passage) {
+/* A stretch of segments, from the scalar s0 to s1. */
+TC_INLINE void tc_emission_stretch(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask,
+                                   TcVec whole_length, TcVec s0, TcVec s1, TcVec spread) {
   TcLanePieces *piece = &e->piece;
-  TcVec s0 = passage->s0, s1 = passage->s1;
-  if (on & TC_CELLS)
-    s0 = s1 = tc_cell_values(job, mask, passage->cell);
   mask = tc_and(mask, tc_and(tc_eq(s0, s0),
                              tc_eq(s1, s1))); /* NaN is transparent: two faces have all four vertices between them */
   const TcVec least = tc_min(s0, s1), most = tc_max(s0, s1);
@@ -167,15 +169,15 @@ TC_INLINE void tc_emission_segment(const unsigned on, const TcGatherJob *job, Tc
       tc_pieces_locate(job->pieces, misplaced, &value, piece);
     }
   } else if (TC_UNLIKELY(tc_any(tc_and_not(mask, here)))) {
-    const TcVec length = passage->length, begin = s0, end = s1, spread = on & TC_BOUND ? passage->spread : tc_set(0);
-    tc_emission_parts(on, job, e, mask, &length, &begin, &end, &spread);
+    const TcVec length = whole_length, begin = s0, end = s1, spread_of_all = spread;
+    tc_emission_parts(on, job, e, mask, &length, &begin, &end, &spread_of_all);
     return;
   } else if (on & TC_BOUND) {
-    tc_emission_move(e, mask, passage->length, s0, s1, passage->spread);
+    tc_emission_move(e, mask, whole_length, s0, s1, spread);
   }
   if (!tc_any(tc_and(mask, piece->filled)))
     return;
-  const TcVec length = tc_select(mask, passage->length, tc_set(0));
+  const TcVec length = tc_select(mask, whole_length, tc_set(0));
   s0 = tc_select(mask, s0, piece->from);
   if (!(on & TC_CELLS)) {
     tc_emission_part(on, e, (TcReal)job->tolerance.thin, mask, length, s0, tc_select(mask, s1, piece->from));
@@ -195,6 +197,71 @@ TC_INLINE void tc_emission_segment(const unsigned on, const TcGatherJob *job, Tc
   e->block_transmittance -= weight;
 }
 
+/* The lanes of `mask` meet isosurfaces, at `fraction` of their ways through their cells. */
+TC_NOINLINE void tc_emission_surface(const TcGatherJob *job, TcEmission *e, TcMask mask, TcMask up,
+                                     const TcPassage *passage, const TcVec *fraction) {
+  TcVec color[3], opacity = tc_set(0);
+  for (int k = 0; k < 3; ++k)
+    color[k] = tc_set(0);
+  for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
+    const int l = __builtin_ctz(lanes), rises = tc_bits(up) >> l & 1, i = e->layers.below[l] - !rises;
+    double rgb[3], at = (double)TC_AT(*fraction, l);
+    if (passage->partial)
+      at = (double)TC_AT(passage->from, l) + at * (double)(TC_AT(passage->to, l) - TC_AT(passage->from, l));
+    tc_surface_color(job, passage, l, i, rises, at, rgb);
+    for (int k = 0; k < 3; ++k)
+      TC_AT(color[k], l) = (TcReal)rgb[k];
+    TC_AT(opacity, l) = (TcReal)job->surfaces->surface[i].opacity;
+    tc_layers_set(job->surfaces, &e->layers, l, rises ? i + 1 : i);
+  }
+  const TcVec weight = e->block_transmittance * opacity;
+  for (int k = 0; k < 3; ++k)
+    e->block_color[k] = tc_madd(weight, color[k], e->block_color[k]);
+  e->block_transmittance -= weight;
+  e->layers.veil -= e->layers.veil * opacity;
+}
+
+/* Segments of which some meet isosurfaces, or set out: stretch after stretch. Where they are met follows from
+ * differences of scalars, as with knots. */
+TC_NOINLINE void tc_emission_meet(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask,
+                                  const TcPassage *passage) {
+  TcLayers *layers = &e->layers;
+  const TcVec s0 = passage->s0, s1 = passage->s1, ratio = 1 / tc_abs(s1 - s0);
+  const TcVec spread = on & TC_BOUND ? passage->spread : tc_set(0);
+  TcVec from = s0;
+  tc_layers_locate(job->surfaces, layers, tc_and_not(mask, tc_and(tc_le(layers->low, s0), tc_lt(s0, layers->high))),
+                   s0);
+  for (;;) {
+    const TcMask up = tc_and(mask, tc_le(layers->high, s1)), down = tc_and(mask, tc_lt(s1, layers->low)),
+                 crossing = tc_or(up, down);
+    const TcVec to = tc_select(up, layers->high, tc_select(down, layers->low, s1));
+    const TcVec share = tc_select(tc_eq(s0, s1), tc_set(1), tc_abs(to - from) * ratio);
+    tc_emission_stretch(on, job, e, mask, passage->length * share, from, to, spread * share);
+    if (!tc_any(crossing))
+      return;
+    const TcVec fraction = tc_abs(to - s0) * ratio;
+    tc_emission_surface(job, e, crossing, up, passage, &fraction);
+    from = tc_select(crossing, to, from);
+    mask = crossing;
+  }
+}
+
+TC_INLINE void tc_emission_segment(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask,
+                                   const TcPassage *passage) {
+  TcVec s0 = passage->s0, s1 = passage->s1;
+  if (on & TC_CELLS)
+    s0 = s1 = tc_cell_values(job, mask, passage->cell);
+  if (on & TC_SURFACES) {
+    mask = tc_and(mask, tc_and(tc_eq(s0, s0), tc_eq(s1, s1)));
+    const TcMask between = tc_and(tc_le(e->layers.low, tc_min(s0, s1)), tc_lt(tc_max(s0, s1), e->layers.high));
+    if (TC_UNLIKELY(tc_any(tc_and_not(mask, between)))) {
+      tc_emission_meet(on, job, e, mask, passage);
+      return;
+    }
+  }
+  tc_emission_stretch(on, job, e, mask, passage->length, s0, s1, on & TC_BOUND ? passage->spread : tc_set(0));
+}
+
 /* Lanes that are complete: beyond the tolerance's depth, or so deep that what is left changes no channel by half a unit
  * in the last place. */
 TC_INLINE TcMask tc_emission_complete(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask active,
@@ -203,7 +270,9 @@ TC_INLINE TcMask tc_emission_complete(const unsigned on, const TcGatherJob *job,
     tc_emission_end_block(on, e);
   const TcVec depth = e->before + e->block_depth;
   const TcReal opaque = (TcReal)job->tolerance.opaque, nearly = (TcReal)TC_NEARLY_OPAQUE;
-  const TcMask near = tc_and(active, tc_gt(depth, tc_set(opaque < nearly ? opaque : nearly)));
+  TcMask near = tc_and(active, tc_gt(depth, tc_set(opaque < nearly ? opaque : nearly)));
+  if (on & TC_SURFACES)
+    near = tc_or(near, tc_and(active, tc_eq(e->layers.veil, tc_set(0))));
   if (TC_LIKELY(!tc_any(near)) || !(on & TC_COLORED) || TC_SINGLE)
     return near;
 #if !TC_SINGLE
@@ -211,8 +280,12 @@ TC_INLINE TcMask tc_emission_complete(const unsigned on, const TcGatherJob *job,
   const TcVec before = tc_load(e->transmittance), left = before * e->block_transmittance;
   for (int k = 0; k < 3; ++k) {
     const TcVec color = tc_madd(before, e->block_color[k], tc_load(e->color[k]));
-    done = tc_and(done, tc_le(left * job->pieces->largest[k], 0x1p-54 * color));
+    const double largest =
+        on & TC_SURFACES ? fmax(job->pieces->largest[k], job->surfaces->largest[k]) : job->pieces->largest[k];
+    done = tc_and(done, tc_le(left * largest, 0x1p-54 * color));
   }
+  if (on & TC_SURFACES)
+    done = tc_or(done, tc_eq(e->layers.veil, tc_set(0)));
   return tc_and(active, tc_or(done, tc_gt(depth, tc_set(opaque))));
 #endif
 }
@@ -224,7 +297,10 @@ TC_INLINE void tc_emission_end(const unsigned on, const TcGatherJob *job, TcEmis
 #if TC_SINGLE
   TC_EACH_LANE sums[3][l] = -expm1(-e->depth[l]);
 #else
-  tc_store(sums[3], tc_segments_opacity(e->before));
+  TcVec alpha = tc_segments_opacity(e->before);
+  if (on & TC_SURFACES)
+    alpha = tc_madd(alpha, e->layers.veil, 1 - e->layers.veil);
+  tc_store(sums[3], alpha);
 #endif
   for (int k = 0; k < 3; ++k) {
     if (on & TC_COLORED)

@@ -18,6 +18,7 @@
 #include "base/lanes.h"
 #include "optics/tolerance.h"
 #include "volume/coefficients.h"
+#include "volume/surfaces.h"
 #include "walk/packet.h"
 
 /* What gatherers are given; each uses some of it. */
@@ -28,10 +29,11 @@ typedef struct TcGatherJob {
   TcTolerance tolerance;
   const struct TcSampler *sampler;
   const TcCoefficients *coefficients;
-  TetcastBlend blend; /* which number is made of the values along a ray */
-  bool to_the_end;    /* coefficients: what is wanted is not complete where all groups are opaque */
-  double rounding;    /* with TC_BOUND: of a value that was interpolated, relative to it */
-  int exponent;       /* of the volume's unit of length */
+  TetcastBlend blend;         /* which number is made of the values along a ray */
+  const TcSurfaces *surfaces; /* with TC_SURFACES */
+  bool to_the_end;            /* coefficients: what is wanted is not complete where all groups are opaque */
+  double rounding;            /* with TC_BOUND: of a value that was interpolated, relative to it */
+  int exponent;               /* of the volume's unit of length */
 } TcGatherJob;
 
 enum { TC_MAX_SUMS = 3 * TETCAST_MAX_GROUPS + 3 };
@@ -41,10 +43,11 @@ typedef struct TcPassage {
   TcVec length, s0, s1;
   TcVec spread; /* with TC_BOUND: ∫ |error of s| dt, at most (tolerance.h); with TC_WEIGHTS, of a number with a range of
                    1 */
-  const uint32_t *cell; /* [TC_LANES] */
-  const TcPacket *walk; /* at the face where they left */
-  TcMask crossed;       /* lanes that are at another face, though none of it may count */
-  bool partial;         /* of some lanes only a part counts, from `from` to `to`, fractions of the whole */
+  const uint32_t *cell;   /* [TC_LANES] */
+  const TcCrossed *entry; /* with TC_SURFACES: the face where they entered */
+  const TcPacket *walk;   /* at the face where they left */
+  TcMask crossed;         /* lanes that are at another face, though none of it may count */
+  bool partial;           /* of some lanes only a part counts, from `from` to `to`, fractions of the whole */
   TcVec from, to;
 } TcPassage;
 

@@ -10,21 +10,6 @@ static const double DEGREE = 0.017453292519943295;
 /* In units of the mesh's size: squares of distances must not overflow. */
 #define TOO_FAR 0x1p500
 
-/* Makes v a unit vector; false if it has no direction. Scaled first, so that no unit overflows. */
-static bool normalize(double v[3]) {
-  const double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
-  if (!(largest > 0) || !isfinite(largest))
-    return false;
-  int exponent;
-  frexp(largest, &exponent);
-  for (int k = 0; k < 3; ++k)
-    v[k] = ldexp(v[k], -exponent);
-  const double length = sqrt(tc_dot(v, v));
-  for (int k = 0; k < 3; ++k)
-    v[k] /= length;
-  return true;
-}
-
 TetcastCamera tc_camera_default(const double bounds[6], double aspect) {
   TetcastCamera camera = {.up = {0, 1, 0}, .projection = TETCAST_PERSPECTIVE, .fovy = 30};
   double half[3];
@@ -55,13 +40,13 @@ TetcastStatus tc_view_create(TetcastContext *context, const TetcastCamera *camer
       return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: the eye is too far from the mesh: %g", camera->eye[k]);
     }
   }
-  if (!normalize(view->forward)) {
+  if (!tc_normalize(view->forward)) {
     return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: eye and target are the same point (%g, %g, %g)",
                     camera->eye[0], camera->eye[1], camera->eye[2]);
   }
-  if (normalize(view->up))
+  if (tc_normalize(view->up))
     tc_cross(view->forward, view->up, view->right);
-  if (!normalize(view->up) || tc_dot(view->right, view->right) < 1e-24 || !normalize(view->right)) {
+  if (!tc_normalize(view->up) || tc_dot(view->right, view->right) < 1e-24 || !tc_normalize(view->right)) {
     return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: up (%g, %g, %g) is parallel to the direction of view",
                     camera->up[0], camera->up[1], camera->up[2]);
   }

@@ -59,8 +59,13 @@ TC_INLINE TcMask add_segment(const int which, const unsigned on, const TcGround 
   TcVec z1 = p->at.z;
   TcMask moved = crossed->mask;
   const TcMask ends = tc_and(moved, tc_lt(p->rays.end, z1));
-  TcPassage passage = {
-      .s0 = crossed->s0, .s1 = crossed->s1, .cell = p->from, .walk = p, .crossed = moved, .partial = false};
+  TcPassage passage = {.s0 = crossed->s0,
+                       .s1 = crossed->s1,
+                       .cell = p->from,
+                       .entry = crossed,
+                       .walk = p,
+                       .crossed = moved,
+                       .partial = false};
   moved = tc_and(moved, tc_gt(z1, from));
   const TcMask behind = tc_and(moved, tc_lt(crossed->z, from));
   if (TC_UNLIKELY(tc_any(tc_or(behind, ends)))) { /* at the eye, where the mesh folds, at the ray's end */
@@ -159,6 +164,10 @@ TC_INLINE void advance_cells(const int which, const unsigned on, const TcGround 
     tc_cell_at(on, ground, p, &faces, 0);
     tc_gather_enter(which, job, &packet->gather, 1, p);
     TcCrossed crossed = {.mask = 1, .z = p->at.z, .s0 = p->at.s, .tilt = p->at.tilt};
+    for (int k = 0; on & TC_SURFACES && k < 3; ++k) {
+      crossed.barycentric[k] = p->at.barycentric[k];
+      crossed.id[k] = p->v[k].id;
+    }
     if (on & TC_CORNERS)
       crossed.s0 = tc_cell_corner_value(ground, cell, p);
     p->seen = tc_max(p->at.z, p->rays.begin); /* of each cell for itself: they may overlap */
@@ -243,12 +252,14 @@ typedef struct Source {
 #define DESTINATION(pixel, sample) ((int64_t)(sample) << 32 | (pixel))
 #define PIXEL_OF(destination)      ((destination)&UINT32_MAX)
 
-static void begin_packet(const int which, const TcGatherJob *job, TcWaiting *waiting, Packet *packet) {
+static void begin_packet(const int which, bool directed, const TcGatherJob *job, TcWaiting *waiting, Packet *packet) {
   TcPacket *p = &packet->walk;
   TcHits *hits = waiting->hits;
   waiting->hits = p->hits;
   p->hits = hits;
   p->rays = waiting->rays;
+  if (directed)
+    memcpy(p->along, waiting->along, sizeof p->along);
   p->lanes = waiting->lanes;
   memcpy(p->destination, waiting->destination, sizeof p->destination);
   p->active = tc_none();
@@ -304,7 +315,7 @@ static bool next_packet(const int which, State *state, const Source *source, Pac
       return false;
   }
   if (queue->next < queue->count)
-    begin_packet(which, &state->job, &queue->waiting[queue->next++], packet);
+    begin_packet(which, state->ground.directed, &state->job, &queue->waiting[queue->next++], packet);
   return true;
 }
 
@@ -318,14 +329,18 @@ static void share_hits(State *state, TcWorker *worker) {
 
 static State *prepare(const TcJob *job, TcWorker *worker) {
   State *state = worker->state;
-  state->ground =
-      (TcGround){.shell = job->shell, .values = job->values, .screen = job->screen, .resolution = job->resolution};
+  state->ground = (TcGround){.shell = job->shell,
+                             .values = job->values,
+                             .screen = job->screen,
+                             .resolution = job->resolution,
+                             .directed = job->surfaces != NULL};
   state->job = (TcGatherJob){.sums = job->sums,
                              .pieces = job->pieces,
                              .values = job->values,
                              .tolerance = job->tolerance,
                              .sampler = job->sampler,
                              .coefficients = job->coefficients,
+                             .surfaces = job->surfaces,
                              .blend = job->blend,
                              .to_the_end = job->to_the_end,
                              .exponent = job->shell->volume->exponent,

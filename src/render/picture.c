@@ -68,12 +68,12 @@ static unsigned association_of(const TcRows *values) {
   return values->association == TETCAST_CELL ? TC_CELLS : values->association == TETCAST_CORNER ? TC_CORNERS : 0;
 }
 
-static void see_through(const TcRows *values, const TcPieces *pieces, unsigned measured, TcJob *job) {
+static void see_through(const TcRows *values, const TcPieces *pieces, unsigned more, TcJob *job) {
   job->values = values;
   job->pieces = pieces;
-  job->sums = measured ? 5 : 4;
+  job->sums = more & TC_BOUND ? 5 : 4;
   job->tolerance = tc_tolerance_begin(pieces, 0);
-  const unsigned needed = (pieces->one_color ? 0 : TC_COLORED) | (pieces->scaled ? TC_SCALED : 0) | measured;
+  const unsigned needed = (pieces->one_color ? 0 : TC_COLORED) | (pieces->scaled ? TC_SCALED : 0) | more;
   job->kernel = choose_row(job->sampler ? "sampled" : "emission", (job->sampler ? 0 : needed) | association_of(values));
 }
 
@@ -94,7 +94,7 @@ void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job) {
     job->kernel = choose_row("value", association_of(scene->values));
     return;
   }
-  see_through(scene->values, &scene->prepared->scaled->pieces, measured, job);
+  see_through(scene->values, &scene->prepared->scaled->pieces, measured | (job->surfaces ? TC_SURFACES : 0), job);
   job->shell = &scene->prepared->shell;
 }
 
@@ -152,6 +152,7 @@ typedef struct Render {
   TetcastFrame *frame;
   const TcIsaKernels *kernels;
   TcScreen screen;
+  TcSurfaces surfaces;
   Working *workers;
   bool bounded; /* a bound on the error is gathered as well */
   bool plain;   /* pixels of the frame are the sums, and there are no channels */
@@ -284,7 +285,8 @@ static bool allow_single(const TetcastScene *scene, const TetcastRenderDesc *des
   const TcIsaKernels *kernels = tc_single_kernels_for(desc->isa);
   TcJob *job = &render->job;
   double values;
-  if (!kernels || !(desc->tolerance > 0) || job->values->association != TETCAST_POINT || job->values->has_holes)
+  if (!kernels || job->surfaces || !(desc->tolerance > 0) || job->values->association != TETCAST_POINT ||
+      job->values->has_holes)
     return false;
   if (!tc_tolerance_single(job->pieces, desc->tolerance, scene->values->largest, 2 * scene->volume->radius,
                            &job->tolerance, &values))
@@ -361,8 +363,8 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
                               TetcastFrame *frame, TetcastRenderStats *stats) {
   TetcastContext *context = scene->context;
   const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
-  const bool measured =
-      exact && !scene->blend && (desc->tolerance > 0 || tc_frame_channel(frame, TETCAST_CHANNEL_ERROR));
+  const bool measured = exact && !scene->blend && scene->isosurface_count == 0 &&
+                        (desc->tolerance > 0 || tc_frame_channel(frame, TETCAST_CHANNEL_ERROR));
   Render render = {.scene = scene, .frame = frame};
   TcJob *job = &render.job;
   job->width = frame->width;
@@ -372,6 +374,10 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
       tc_view_create(context, camera, scene->volume, (double)frame->width / (double)frame->height, &job->view);
   if (!status && !scene->coefficients && !scene->blend)
     status = tc_scene_prepare(scene);
+  if (!status && scene->isosurface_count > 0) {
+    status = tc_scene_surfaces(scene, &render.surfaces);
+    job->surfaces = &render.surfaces;
+  }
   TcSampler *sampler = NULL;
   if (!status && !exact)
     status = tc_sampler_create(context, desc->integrator, desc->integrator_n, &sampler);

@@ -40,6 +40,8 @@ typedef struct TcPrepared {
   bool ready;
   TetcastTransferFunction *scaled; /* in the volume's units */
   TcShell shell;                   /* of what can be seen */
+  TetcastIsosurface *isosurfaces;  /* the scene's, as its field is stored; NULL: there are none */
+  TcGradients gradients;           /* of the field, once a smooth surface was lit */
   void *vertices[2];               /* projected, in double and in single precision; NULL: none, or in use */
 } TcPrepared;
 
@@ -50,6 +52,9 @@ struct TetcastScene {
   TetcastTransferFunction *transfer; /* NULL: none set yet, or coefficients */
   TcCoefficients *coefficients;      /* NULL: none set yet, or a transfer function */
   TetcastBlend blend;
+  TetcastIsosurface *isosurfaces; /* [isosurface_count], values ascending, in the field's unit */
+  int isosurface_count;
+  TcLighting lighting;
   TcPrepared *prepared;
 };
 
@@ -70,6 +75,14 @@ void tc_scene_destroy(TetcastScene *scene);
 TetcastStatus tc_scene_set_field(TetcastScene *scene, const TetcastField *field);
 void tc_scene_share_field(TetcastScene *scene, const TetcastScene *other);
 TetcastStatus tc_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer);
+TetcastStatus tc_scene_set_isosurfaces(TetcastScene *scene, const TetcastIsosurface *isosurfaces, int count);
+TcLighting tc_lighting_of(const TetcastShadingDesc *desc);
+/* The scene's isosurfaces as its field is stored. */
+TetcastStatus tc_scene_scale_isosurfaces(const TetcastScene *scene, TetcastIsosurface **scaled);
+/* What kernels are to know of them, once the scene is prepared. */
+TetcastStatus tc_scene_surfaces(const TetcastScene *scene, TcSurfaces *surfaces);
+/* What follows from field, transfer function and isosurfaces is to be made anew. */
+void tc_scene_forget(TetcastScene *scene);
 TetcastStatus tc_scene_set_coefficients(TetcastScene *scene, const TetcastCoefficientsDesc *desc);
 /* Makes what follows from field and transfer function, if that was not done. */
 TetcastStatus tc_scene_prepare(const TetcastScene *scene);

@@ -15,15 +15,42 @@ TetcastStatus tc_scene_create(TetcastContext *context, const TetcastVolume *volu
   memset(prepared, 0, sizeof *prepared);
   pthread_mutex_init(&prepared->mutex, NULL); /* which can't fail with default attributes */
   *scene = (TetcastScene){.context = context, .volume = volume, .prepared = prepared};
+  const TetcastShadingDesc shading = tetcast_shading_desc_default();
+  scene->lighting = tc_lighting_of(&shading);
   *out = scene;
   return TETCAST_OK;
 }
 
-static void forget(TcPrepared *prepared) {
+static void forget(TetcastContext *context, TcPrepared *prepared) {
+  tc_release(context, prepared->isosurfaces);
+  prepared->isosurfaces = NULL;
   tc_shell_clear(&prepared->shell);
   tc_transfer_destroy(prepared->scaled);
   prepared->scaled = NULL;
   prepared->ready = false;
+}
+
+void tc_scene_forget(TetcastScene *scene) {
+  forget(scene->context, scene->prepared);
+}
+
+/* The transfer function in the volume's units. Without one, isosurfaces are in a volume that is not seen. */
+static TetcastStatus scale_transfer(const TetcastScene *scene, TetcastTransferFunction **scaled) {
+  TetcastTransferFunction *nothing = NULL;
+  TetcastStatus status = TETCAST_OK;
+  if (!scene->transfer) {
+    TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
+    static const double color[4] = {0, 0, 0, 0}, extinction[2] = {0, 0};
+    desc.color = color;
+    desc.extinction = extinction;
+    desc.color_count = desc.extinction_count = 1;
+    status = tc_transfer_create(scene->context, &desc, &nothing);
+  }
+  if (!status)
+    status = tc_transfer_rescale(scene->context, nothing ? nothing : scene->transfer, scene->values->exponent,
+                                 scene->volume->exponent, scaled);
+  tc_transfer_destroy(nothing);
+  return status;
 }
 
 /* Calls for one scene may come at the same time: one of them does the work. None is under way that uses what is
@@ -33,11 +60,13 @@ TetcastStatus tc_scene_prepare(const TetcastScene *scene) {
   TetcastStatus status = TETCAST_OK;
   pthread_mutex_lock(&prepared->mutex);
   if (!prepared->ready) {
-    forget(prepared);
-    status = tc_transfer_rescale(scene->context, scene->transfer, scene->values->exponent, scene->volume->exponent,
-                                 &prepared->scaled);
+    forget(scene->context, prepared);
+    status = scale_transfer(scene, &prepared->scaled);
     if (!status)
-      status = tc_shell_build(scene->values, &prepared->scaled->pieces, &prepared->shell);
+      status = tc_scene_scale_isosurfaces(scene, &prepared->isosurfaces);
+    if (!status)
+      status = tc_shell_build(scene->values, &prepared->scaled->pieces, prepared->isosurfaces, scene->isosurface_count,
+                              &prepared->shell);
     prepared->ready = !status;
   }
   pthread_mutex_unlock(&prepared->mutex);
@@ -56,7 +85,9 @@ void *tc_scene_swap_vertices(const TetcastScene *scene, bool single, void *verti
 void tc_scene_destroy(TetcastScene *scene) {
   if (!scene)
     return;
-  forget(scene->prepared);
+  forget(scene->context, scene->prepared);
+  tc_gradients_clear(&scene->prepared->gradients);
+  tc_release(scene->context, scene->isosurfaces);
   for (int i = 0; i < 2; ++i)
     tc_release(scene->context, scene->prepared->vertices[i]);
   pthread_mutex_destroy(&scene->prepared->mutex);
@@ -68,7 +99,8 @@ void tc_scene_destroy(TetcastScene *scene) {
 }
 
 static void bind(TetcastScene *scene, TcRows *rows) {
-  forget(scene->prepared);
+  forget(scene->context, scene->prepared);
+  tc_gradients_clear(&scene->prepared->gradients);
   tc_rows_release(scene->values);
   scene->values = rows;
 }
@@ -88,7 +120,7 @@ void tc_scene_share_field(TetcastScene *scene, const TetcastScene *other) {
 
 /* One of the two, or neither. */
 static void replace(TetcastScene *scene, TetcastTransferFunction *transfer, TcCoefficients *coefficients) {
-  forget(scene->prepared);
+  forget(scene->context, scene->prepared);
   tc_transfer_destroy(scene->transfer);
   tc_coefficients_destroy(scene->coefficients);
   scene->transfer = transfer;

@@ -23,6 +23,19 @@ static bool is_visible(const TcPieces *pieces, double low, double high) {
   return false;
 }
 
+/* Whether any of the isosurfaces, which ascend, has a value in [low, high]. */
+static bool is_crossed(const TetcastIsosurface *isosurfaces, int count, double low, double high) {
+  int below = 0, above = count;
+  while (below < above) {
+    const int middle = (below + above) / 2;
+    if (isosurfaces[middle].value < low)
+      below = middle + 1;
+    else
+      above = middle;
+  }
+  return below < count && isosurfaces[below].value <= high;
+}
+
 /* The faces of cluster c's cells behind which nothing can be seen. Their number; written to `faces` unless it is NULL.
  */
 static uint32_t cluster_faces(const Build *build, int64_t c, TcShellFace *faces) {
@@ -94,7 +107,8 @@ static TetcastStatus make_faces(Build *build, TcShell *shell) {
   return TETCAST_OK;
 }
 
-TetcastStatus tc_shell_build(const TcRows *rows, const TcPieces *pieces, TcShell *shell) {
+TetcastStatus tc_shell_build(const TcRows *rows, const TcPieces *pieces, const TetcastIsosurface *isosurfaces,
+                             int isosurface_count, TcShell *shell) {
   const TetcastVolume *volume = rows->volume;
   *shell = volume->shell;
   const TcClusters *clusters = &volume->clusters;
@@ -107,7 +121,9 @@ TetcastStatus tc_shell_build(const TcRows *rows, const TcPieces *pieces, TcShell
   int64_t count = 0;
   for (int64_t c = 0; c < clusters->count; ++c) {
     const float *range = rows->range[c];
-    visible[c] = range[0] <= range[1] && is_visible(pieces, (double)range[0], (double)range[1]);
+    visible[c] =
+        range[0] <= range[1] && (is_visible(pieces, (double)range[0], (double)range[1]) ||
+                                 is_crossed(isosurfaces, isosurface_count, (double)range[0], (double)range[1]));
     count += visible[c];
   }
   /* With more of it visible, entering again and again costs what is saved: a third visible in bands was a wash. */

@@ -15,6 +15,7 @@
 
 typedef struct TcPacket {
   TcRays rays;
+  TcWide along[3]; /* if the ground is directed: the rays' directions, unit vectors */
   /* The face where each ray is: its vertices, counter-clockwise around the ray, each with the cross product of the two
    * others, > 0. */
   TcLanePoints v[3];
@@ -136,6 +137,10 @@ typedef struct TcCrossed {
   TcVec z, s0, s1;
   TcTilt tilt; /* of the face where they entered */
   TcVec range; /* with TC_CORNERS: of the scalar */
+
+  /* With TC_SURFACES: the face where they entered. */
+  TcVec barycentric[3];
+  TcWord id[3];
 } TcCrossed;
 
 /* A step's first part: where the vertices of p->vertex lie. */
@@ -156,6 +161,12 @@ TC_INLINE TcMask tc_packet_cross(const unsigned on, const TcGround *ground, TcPa
   crossed->z = p->at.z;
   crossed->s0 = p->at.s;
   crossed->tilt = p->at.tilt;
+  if (on & TC_SURFACES) {
+    for (int k = 0; k < 3; ++k) {
+      crossed->barycentric[k] = p->at.barycentric[k];
+      crossed->id[k] = v[k].id;
+    }
+  }
   TcVec corner[4];
   if (on & TC_CORNERS) {
     const TcWord id = q->id;

@@ -23,6 +23,7 @@ typedef struct TcGround {
   const TcRows *values;    /* a scalar that is interpolated, or constant in cells; NULL: none */
   const TcScreen *screen;  /* NULL: in ray space */
   TcResolution resolution; /* with TC_BOUND */
+  bool directed;           /* packets are to know the rays' directions */
 } TcGround;
 
 /* The rays of a packet. */
@@ -237,7 +238,7 @@ typedef struct TcTilt {
 /* Where rays cross a face. */
 typedef struct TcCrossing {
   TcVec z, s;           /* the depth; the scalar of a point field, which is kept within those of the vertices */
-  TcVec barycentric[3]; /* with TC_WEIGHTS or TC_CORNERS */
+  TcVec barycentric[3]; /* with TC_WEIGHTS, TC_CORNERS or TC_SURFACES */
   TcVec reach;          /* with TC_BOUND: how far the face's vertices are beside the ray, at most */
   TcTilt tilt;          /* with TC_BOUND */
 } TcCrossing;
@@ -284,7 +285,7 @@ TC_INLINE void tc_cross_face(const unsigned on, const TcGround *ground, const Tc
   }
   const TcVec inverse = 1 / (w[0] + w[1] + w[2]);
   c->z = n * inverse * rays->scale;
-  if (on & (TC_WEIGHTS | TC_CORNERS)) {
+  if (on & (TC_WEIGHTS | TC_CORNERS | TC_SURFACES)) {
     for (int k = 0; k < 3; ++k)
       c->barycentric[k] = w[k] * inverse;
   }

@@ -14,6 +14,7 @@ enum {
 /* Rays that wait to become a packet. */
 typedef struct TcWaiting {
   TcRays rays;
+  TcWide along[3]; /* as TcPacket has them */
   unsigned lanes;
   unsigned doubtful; /* single precision: lanes whose rays pass an edge of the shell as near as rounding may move it */
   TcHits *hits;
@@ -32,6 +33,8 @@ static void tc_enqueue(TcPlaced *placed, TcQueue *queue) {
   const int first = queue->count * TC_LANES;
   TcWaiting *waiting = &queue->waiting[queue->count++];
   waiting->lanes = tc_take(queue->ground, placed, &waiting->rays);
+  if (queue->ground->directed)
+    memcpy(waiting->along, placed->lines.direction, sizeof waiting->along);
   memcpy(waiting->destination, placed->destination, sizeof waiting->destination);
   for (int k = 0; k < 3; ++k) {
     memcpy(&queue->from_center[k][first], &placed->from_center[k], sizeof placed->from_center[k]);

@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Isosurfaces between the parts of a ray's segments. A lane is between two isosurfaces as long as low ≤ s < high, which
+ * is all that a step has to look at; which of them it meets is looked for where it is not. */
+#ifndef TC_GATHER_SURFACES_H
+#define TC_GATHER_SURFACES_H
+
+#include "gather/seam.h"
+
+/* Where a lane is among them. */
+typedef struct TcLayers {
+  TcVec low, high;
+  TcVec veil; /* what the surfaces so far let through */
+  int below[TC_LANES];
+} TcLayers;
+
+TC_INLINE void tc_layers_begin(TcLayers *layers) {
+  layers->low = tc_set((TcReal)INFINITY); /* none */
+  layers->high = tc_set((TcReal)-INFINITY);
+  layers->veil = tc_set(1);
+}
+
+/* `below` isosurfaces are below lane l. */
+TC_INLINE void tc_layers_set(const TcSurfaces *surfaces, TcLayers *layers, int l, int below) {
+  layers->below[l] = below;
+  TC_AT(layers->low, l) = below > 0 ? (TcReal)surfaces->surface[below - 1].value : (TcReal)-INFINITY;
+  TC_AT(layers->high, l) = below < surfaces->count ? (TcReal)surfaces->surface[below].value : (TcReal)INFINITY;
+}
+
+/* The lanes of `mask` find where they are. */
+TC_INLINE void tc_layers_locate(const TcSurfaces *surfaces, TcLayers *layers, TcMask mask, TcVec s) {
+  for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
+    const int l = __builtin_ctz(lanes);
+    int below = 0, above = surfaces->count;
+    while (below < above) {
+      const int middle = (below + above) / 2;
+      if (surfaces->surface[middle].value <= (double)TC_AT(s, l))
+        below = middle + 1;
+      else
+        above = middle;
+    }
+    tc_layers_set(surfaces, layers, l, below);
+  }
+}
+
+/* The gradient at `fraction` of the way that lane l went through a cell. */
+static void tc_surface_gradient(const TcGatherJob *job, const TcPassage *passage, int l, double fraction,
+                                double gradient[3]) {
+  const TcCrossed *entry = passage->entry;
+  const TcPacket *walk = passage->walk;
+  if (job->surfaces->smooth) {
+    for (int i = 0; i < 3; ++i)
+      gradient[i] = 0;
+    for (int k = 0; k < 3; ++k) {
+      const float *first = job->surfaces->smooth->at[TC_AT(entry->id[k], l)],
+                  *last = job->surfaces->smooth->at[TC_AT(walk->v[k].id, l)];
+      const double from = (1 - fraction) * (double)TC_AT(entry->barycentric[k], l),
+                   to = fraction * (double)TC_AT(walk->at.barycentric[k], l);
+      for (int i = 0; i < 3; ++i)
+        gradient[i] += from * (double)first[i] + to * (double)last[i];
+    }
+    return;
+  }
+  /* The cell's vertices are those of the face where the ray came in and the one that is new in the other. */
+  uint32_t id[4] = {TC_AT(entry->id[0], l), TC_AT(entry->id[1], l), TC_AT(entry->id[2], l), 0};
+  for (int k = 0; k < 3; ++k) {
+    const uint32_t other = TC_AT(walk->v[k].id, l);
+    if (other != id[0] && other != id[1] && other != id[2])
+      id[3] = other;
+  }
+  if (job->values->association == TETCAST_CORNER)
+    tc_sort4(id);
+  double position[4][3], value[4], six_volumes;
+  for (int k = 0; k < 4; ++k) {
+    tc_volume_vertex(job->values->volume, id[k], position[k]);
+    value[k] = (job->values->association == TETCAST_CORNER ? tc_rows_value(job->values, passage->cell[l], k)
+                                                           : tc_rows_value(job->values, id[k], 0)) /
+               job->values->largest;
+  }
+  tc_cell_gradient(position, value, gradient, &six_volumes);
+}
+
+/* The colour of isosurface `i` as lane l sees it there, from below if the scalar rises along the ray. */
+static void tc_surface_color(const TcGatherJob *job, const TcPassage *passage, int l, int i, bool rises,
+                             double fraction, double color[3]) {
+  memcpy(color, job->surfaces->surface[i].color, 3 * sizeof *color);
+  if (!job->surfaces->lighting)
+    return;
+  double gradient[3], along[3];
+  for (int k = 0; k < 3; ++k)
+    along[k] = TC_AT(passage->walk->along[k], l);
+  tc_surface_gradient(job, passage, l, fraction, gradient);
+  for (int k = 0; rises && k < 3; ++k)
+    gradient[k] = -gradient[k];
+  tc_light_surface(job->surfaces->lighting, along, gradient, color);
+}
+
+#endif

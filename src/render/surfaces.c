@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A scene's isosurfaces and light, and what kernels need of them. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/render.h"
+
+static int by_value(const void *a, const void *b) {
+  const double x = ((const TetcastIsosurface *)a)->value, y = ((const TetcastIsosurface *)b)->value;
+  return x < y ? -1 : x > y;
+}
+
+TetcastStatus tc_scene_set_isosurfaces(TetcastScene *scene, const TetcastIsosurface *isosurfaces, int count) {
+  TetcastIsosurface *copy = NULL;
+  if (count > 0 && !tc_allocate_array(scene->context, (void **)&copy, count, sizeof *copy, "isosurfaces"))
+    return TETCAST_ERROR_MEMORY;
+  if (count > 0) {
+    memcpy(copy, isosurfaces, (size_t)count * sizeof *copy);
+    qsort(copy, (size_t)count, sizeof *copy, by_value);
+  }
+  for (int i = 1; i < count; ++i) {
+    if (copy[i].value == copy[i - 1].value) {
+      const double value = copy[i].value;
+      tc_release(scene->context, copy);
+      return tc_error(scene->context, TETCAST_ERROR_ARGUMENT, "two isosurfaces of the value %.17g", value);
+    }
+  }
+  tc_release(scene->context, scene->isosurfaces);
+  scene->isosurfaces = copy;
+  scene->isosurface_count = count;
+  tc_scene_forget(scene); /* what is visible depends on them */
+  return TETCAST_OK;
+}
+
+TcLighting tc_lighting_of(const TetcastShadingDesc *desc) {
+  TcLighting lighting = {.surfaces = desc->shade == TETCAST_SHADE_SURFACES,
+                         .smooth = desc->normals == TETCAST_NORMALS_SMOOTH,
+                         .ambient = desc->ambient,
+                         .diffuse = desc->diffuse,
+                         .specular = desc->specular,
+                         .exponent = desc->exponent,
+                         .light_count = desc->light_count};
+  for (int i = 0; i < desc->light_count; ++i) {
+    lighting.light[i] = desc->lights[i];
+    tc_normalize(lighting.light[i].direction);
+  }
+  return lighting;
+}
+
+TetcastStatus tc_scene_scale_isosurfaces(const TetcastScene *scene, TetcastIsosurface **scaled) {
+  const int count = scene->isosurface_count;
+  if (count == 0)
+    return TETCAST_OK;
+  if (!tc_allocate_array(scene->context, (void **)scaled, count, sizeof **scaled, "isosurfaces"))
+    return TETCAST_ERROR_MEMORY;
+  for (int i = 0; i < count; ++i) {
+    TetcastIsosurface *surface = &(*scaled)[i];
+    *surface = scene->isosurfaces[i];
+    surface->value = ldexp(surface->value, -scene->values->exponent);
+    for (int k = 0; k < 3; ++k)
+      surface->color[k] = fmin(surface->color[k], TC_LARGEST_COLOR);
+  }
+  return TETCAST_OK;
+}
+
+TetcastStatus tc_scene_surfaces(const TetcastScene *scene, TcSurfaces *surfaces) {
+  const TcLighting *lighting = &scene->lighting;
+  TcPrepared *prepared = scene->prepared;
+  *surfaces = (TcSurfaces){.count = scene->isosurface_count, .surface = prepared->isosurfaces};
+  for (int i = 0; i < surfaces->count; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const double color = prepared->isosurfaces[i].color[k];
+      surfaces->largest[k] = fmax(surfaces->largest[k], lighting->surfaces ? tc_light_largest(lighting, color) : color);
+    }
+  }
+  if (!lighting->surfaces)
+    return TETCAST_OK;
+  surfaces->lighting = lighting;
+  if (!lighting->smooth || scene->values->association != TETCAST_POINT)
+    return TETCAST_OK;
+  TetcastStatus status = TETCAST_OK;
+  pthread_mutex_lock(&prepared->mutex);
+  if (!prepared->gradients.at)
+    status = tc_gradients_build(scene->values, &prepared->gradients);
+  pthread_mutex_unlock(&prepared->mutex);
+  surfaces->smooth = &prepared->gradients;
+  return status;
+}
