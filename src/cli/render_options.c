@@ -15,7 +15,7 @@
 #include "cli.h"
 #include "color.h"
 #include "numbered.h"
-#include "surfaces.h"
+#include "surface_text.h"
 
 /* A picture is made by a transfer function or from coefficients. */
 #define DIRECT (BIT(OPTION_EXTINCTION) | BIT(OPTION_EMISSION) | BIT(OPTION_GROUPS))

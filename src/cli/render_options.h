@@ -147,6 +147,11 @@ static inline TetcastBlend render_options_blend(const RenderOptions *options) {
   return render_options_given(options, OPTION_BLEND) ? (TetcastBlend)options->blend : TETCAST_BLEND_COMPOSITE;
 }
 
+/* Whether isosurfaces are all there is to see: no transfer function was given beside them. */
+static inline bool render_options_surfaces_alone(const RenderOptions *options) {
+  return render_options_given(options, OPTION_ISOSURFACE) && !render_options_given(options, OPTION_TRANSFER);
+}
+
 /* The TetcastChannel bits of a list as --channels has it, 0: there is something else in it. */
 uint32_t render_option_channels(const char *text);
 

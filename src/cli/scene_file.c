@@ -10,7 +10,6 @@
 #include "cli.h"
 #include "file.h"
 #include "json.h"
-#include "surfaces.h"
 
 /* Several files are the steps of a series. NULL, or what is wrong. */
 static const char *set_inputs(RenderOptions *options, const json_t *list) {
@@ -259,7 +258,7 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
     json_decref(scene);
     return false;
   }
-  if (surfaces_alone(options)) {
+  if (render_options_surfaces_alone(options)) {
     json_object_set_new(scene, "preset", json_string(render_options_preset(options)));
     json_object_set_new(scene, "range", range ? cli_json_array(range, 2) : json_string("step"));
   } else if (transfer_function) {

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "cli.h"
-#include "surfaces.h"
 
 /* A pixel shows something from the first level of eight bits on, and is opaque from the last. */
 static const double visible = 1.0 / 255, opaque = 254.5 / 255;
@@ -258,7 +257,7 @@ static char *explain_blank(const Probe *probe, const Look *look) {
     return cli_duplicate("what is there has the colours of the background");
   if (render_options_blend(&run->options) != TETCAST_BLEND_COMPOSITE)
     return cli_duplicate("what the camera sees is too small for these pixels");
-  if (surfaces_alone(&run->options))
+  if (render_options_surfaces_alone(&run->options))
     return cli_duplicate("no isosurface lies in what the camera sees, or all of them are transparent");
   const double extinction = largest_extinction(run, run->stage.range);
   if (!(extinction > 0)) {

@@ -221,28 +221,35 @@ TC_NOINLINE void tc_emission_surface(const TcGatherJob *job, TcEmission *e, TcMa
   e->layers.veil -= e->layers.veil * opacity;
 }
 
-/* Segments of which some meet isosurfaces, or set out: stretch after stretch. Where they are met follows from
- * differences of scalars, as with knots. */
-TC_NOINLINE void tc_emission_meet(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask,
+/* Segments of which some meet isosurfaces: stretch after stretch. `crossed` are the lanes that went from face to face,
+ * `mask` those of them for which a length of it counts. Which surfaces are met depends on the sides of faces alone, so
+ * one that lies in a cell whose length is rounded to 0 is met all the same; where it is met follows from differences of
+ * scalars, as with knots. */
+TC_NOINLINE void tc_emission_meet(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask, TcMask crossed,
                                   const TcPassage *passage) {
   TcLayers *layers = &e->layers;
-  const TcVec s0 = passage->s0, s1 = passage->s1, ratio = 1 / tc_abs(s1 - s0);
-  const TcVec spread = on & TC_BOUND ? passage->spread : tc_set(0);
+  const TcVec zero = tc_set(0), s0 = passage->s0, s1 = passage->s1, ratio = 1 / tc_abs(s1 - s0);
+  const TcVec low = tc_min(s0, s1), high = tc_max(s0, s1);
+  const TcVec length = tc_select(mask, passage->length, zero), spread = on & TC_BOUND ? passage->spread : zero;
+  const TcMask valid = tc_and(crossed, tc_and(tc_eq(s0, s0), tc_eq(s1, s1)));
+  const TcMask before = tc_lt(passage->walk->at.z, passage->walk->rays.begin);
+  tc_layers_forget(layers, tc_and(crossed, tc_or(before, tc_and_not(tc_all(), valid))));
+  const TcMask here = tc_and_not(valid, before);
+  tc_layers_locate(job->surfaces, layers, tc_and(here, tc_layers_unknown(on, layers, s0)), s0);
   TcVec from = s0;
-  tc_layers_locate(job->surfaces, layers, tc_and_not(mask, tc_and(tc_le(layers->low, s0), tc_lt(s0, layers->high))),
-                   s0);
-  for (;;) {
-    const TcMask up = tc_and(mask, tc_le(layers->high, s1)), down = tc_and(mask, tc_lt(s1, layers->low)),
+  for (TcMask left = here;;) {
+    const TcMask up = tc_and(left, tc_le(layers->high, s1)), down = tc_and(left, tc_lt(s1, layers->low)),
                  crossing = tc_or(up, down);
-    const TcVec to = tc_select(up, layers->high, tc_select(down, layers->low, s1));
-    const TcVec share = tc_select(tc_eq(s0, s1), tc_set(1), tc_abs(to - from) * ratio);
-    tc_emission_stretch(on, job, e, mask, passage->length * share, from, to, spread * share);
+    const TcVec value = tc_select(up, layers->high, tc_select(down, layers->low, s1));
+    const TcVec to = tc_max(low, tc_min(high, value)); /* where a cell was left out, behind the surface already */
+    const TcVec share = tc_select(tc_eq(s0, s1), tc_select(crossing, zero, tc_set(1)), tc_abs(to - from) * ratio);
+    tc_emission_stretch(on, job, e, tc_and(mask, left), length * share, from, to, spread * share);
     if (!tc_any(crossing))
       return;
-    const TcVec fraction = tc_abs(to - s0) * ratio;
+    const TcVec fraction = tc_select(tc_eq(s0, s1), zero, tc_abs(to - s0) * ratio);
     tc_emission_surface(job, e, crossing, up, passage, &fraction);
     from = tc_select(crossing, to, from);
-    mask = crossing;
+    left = crossing;
   }
 }
 
@@ -252,14 +259,21 @@ TC_INLINE void tc_emission_segment(const unsigned on, const TcGatherJob *job, Tc
   if (on & TC_CELLS)
     s0 = s1 = tc_cell_values(job, mask, passage->cell);
   if (on & TC_SURFACES) {
-    mask = tc_and(mask, tc_and(tc_eq(s0, s0), tc_eq(s1, s1)));
-    const TcMask between = tc_and(tc_le(e->layers.low, tc_min(s0, s1)), tc_lt(tc_max(s0, s1), e->layers.high));
-    if (TC_UNLIKELY(tc_any(tc_and_not(mask, between)))) {
-      tc_emission_meet(on, job, e, mask, passage);
+    TcMask met = tc_and_not(passage->crossed, tc_and(tc_le(e->layers.low, s1), tc_lt(s1, e->layers.high)));
+    if (on & TC_CORNERS)
+      met = tc_or(met, tc_and(passage->crossed, tc_layers_unknown(on, &e->layers, s0)));
+    if (TC_UNLIKELY(tc_any(met))) {
+      tc_emission_meet(on, job, e, mask, passage->crossed, passage);
       return;
     }
   }
   tc_emission_stretch(on, job, e, mask, passage->length, s0, s1, on & TC_BOUND ? passage->spread : tc_set(0));
+}
+
+TC_INLINE void tc_emission_enter(const TcGatherJob *job, TcEmission *e, TcMask mask, const TcPacket *walk) {
+  (void)walk;
+  if (job->surfaces)
+    tc_layers_forget(&e->layers, mask);
 }
 
 /* Lanes that are complete: beyond the tolerance's depth, or so deep that what is left changes no channel by half a unit
@@ -317,7 +331,5 @@ TC_INLINE void tc_emission_end(const unsigned on, const TcGatherJob *job, TcEmis
         tc_tolerance_bound(&job->tolerance, e->depth[l], ending->stopped >> l & 1, sums[3][l], ending->steps, moved);
   }
 }
-
-#define tc_emission_enter(job, e, mask, walk) ((void)0)
 
 #endif

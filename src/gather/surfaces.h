@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Isosurfaces between the parts of a ray's segments. A lane is between two isosurfaces as long as low ≤ s < high, which
- * is all that a step has to look at; which of them it meets is looked for where it is not. */
+/* Isosurfaces between the parts of a ray's segments. A lane is between two of them, in a layer; as long as the scalar
+ * is in it at the next face, low ≤ s < high, nothing is met, and that is all that a step has to look at. */
 #ifndef TC_GATHER_SURFACES_H
 #define TC_GATHER_SURFACES_H
 
 #include "gather/seam.h"
 
-/* Where a lane is among them. */
+/* Where lanes are among them. A lane that sets out, comes from cells with NaN, or is before the part of its ray that
+ * counts doesn't know yet: its `low` is ∞. */
 typedef struct TcLayers {
   TcVec low, high;
   TcVec veil; /* what the surfaces so far let through */
@@ -14,9 +15,20 @@ typedef struct TcLayers {
 } TcLayers;
 
 TC_INLINE void tc_layers_begin(TcLayers *layers) {
-  layers->low = tc_set((TcReal)INFINITY); /* none */
-  layers->high = tc_set((TcReal)-INFINITY);
+  layers->low = layers->high = tc_set((TcReal)INFINITY);
   layers->veil = tc_set(1);
+}
+
+TC_INLINE void tc_layers_forget(TcLayers *layers, TcMask mask) {
+  layers->low = tc_select(mask, tc_set((TcReal)INFINITY), layers->low);
+}
+
+/* Lanes that have to find their layer. A scalar that may jump from cell to cell has it found in each: only what it does
+ * within a cell is a surface. */
+TC_INLINE TcMask tc_layers_unknown(const unsigned on, const TcLayers *layers, TcVec s) {
+  if (on & TC_CORNERS)
+    return tc_and_not(tc_all(), tc_and(tc_le(layers->low, s), tc_lt(s, layers->high)));
+  return tc_eq(layers->low, tc_set((TcReal)INFINITY));
 }
 
 /* `below` isosurfaces are below lane l. */

@@ -22,7 +22,8 @@ static bool tc_cell_faces(const unsigned on, const TcGround *ground, const TcRay
     tc_points_of_one(ground, rays, vertex[k], &p[k]);
   int count = 0;
   for (int k = 0; k < 4 && count < 2; ++k) {
-    const TcLanePoints v[3] = {p[k], p[(k + 1) & 3], p[(k + 2) & 3]};
+    /* In an order that does not depend on the cell, so that depth and scalar are the same number in the other one. */
+    const TcLanePoints v[3] = {p[k < 1], p[k < 3 ? 3 : 2], p[k < 2 ? 2 : 1]};
     TcVec e[3];
     tc_edges_of(tc_all(), v, e);
     const unsigned negative = tc_bits(tc_negative(e[0])) + tc_bits(tc_negative(e[1])) + tc_bits(tc_negative(e[2]));

@@ -240,7 +240,9 @@ static void check(Stage *stage, double color, double limit, int rows[TC_KERNELS]
     job->kernel = chosen;
     if (!row_serves(&kernel_rows[row], job))
       continue;
+    static const TcSurfaces none = {.count = 0};
     job->kernel = row;
+    job->surfaces = kernel_rows[row].features & TC_SURFACES ? &none : NULL;
     for (int kernel = 0; kernel < ALL_KERNELS; ++kernel) {
       if (!kernel_runs(kernel, job->shell->volume))
         continue;

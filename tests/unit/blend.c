@@ -3,7 +3,7 @@
  * chord, its mean halfway between them, and its integral is that times the chord's length, whatever the cells are. Rays
  * through vertices, along edges and within faces, from outside and inside, fields of points, cells and corners, both
  * traversals, NaN; and what the library says where it can't. */
-#include "support.h"
+#include "world.h"
 
 #include <float.h>
 
@@ -12,50 +12,6 @@ enum { W = 41, H = 33, PIXELS = W * H };
 static const TetcastBlend blends[] = {TETCAST_BLEND_MAXIMUM, TETCAST_BLEND_MINIMUM, TETCAST_BLEND_AVERAGE,
                                       TETCAST_BLEND_ADDITIVE};
 enum { BLENDS = sizeof blends / sizeof *blends };
-
-typedef struct World {
-  Fixture fixture;
-  Cube cube;
-  TetcastVolume *volume;
-  TetcastScene *scene;
-} World;
-
-static void world_begin(World *world, int n, double jitter, double scale, TetcastTraversal traversal) {
-  assert_int_equal(fixture_begin(&world->fixture, 2, 0), TETCAST_OK);
-  TetcastContext *context = world->fixture.context;
-  world->cube = cube_create(n, jitter);
-  for (int64_t i = 0; i < 3 * world->cube.vertex_count; ++i)
-    world->cube.vertices[i] *= scale;
-  TetcastMesh *mesh = cube_mesh(context, &world->cube);
-  TetcastVolumeDesc desc = tetcast_volume_desc_default();
-  desc.traversal = traversal;
-  desc.corners = 1;
-  world->volume = NULL;
-  world->scene = NULL;
-  assert_int_equal(tetcast_volume_create(context, mesh, &desc, &world->volume), TETCAST_OK);
-  assert_int_equal(tetcast_scene_create(context, world->volume, &world->scene), TETCAST_OK);
-  tetcast_mesh_destroy(&mesh);
-  TetcastTransferFunction *transfer = gray_of(context, 0); /* which hides nothing */
-  assert_int_equal(tetcast_scene_set_transfer_function(world->scene, transfer), TETCAST_OK);
-  tetcast_transfer_function_destroy(&transfer);
-}
-
-static void world_end(World *world) {
-  tetcast_scene_destroy(&world->scene);
-  tetcast_volume_destroy(&world->volume);
-  cube_destroy(&world->cube);
-  fixture_end(&world->fixture);
-}
-
-static int64_t count_of(const Cube *cube, TetcastAssociation association) {
-  return association == TETCAST_POINT ? cube->vertex_count : cube->cell_count * (association == TETCAST_CORNER ? 4 : 1);
-}
-
-static void set_values(World *world, const double *values, TetcastAssociation association) {
-  TetcastField *field = field_of(world->fixture.context, values, count_of(&world->cube, association), association);
-  assert_int_equal(tetcast_scene_set_field(world->scene, field), TETCAST_OK);
-  tetcast_field_destroy(&field);
-}
 
 static void set_constant(World *world, double value, TetcastAssociation association) {
   const int64_t count = count_of(&world->cube, association);
@@ -122,38 +78,6 @@ static const double *pixels_of(const TetcastFrame *frame) {
 
 /* ── rays ── */
 
-/* From the eye on, as the camera has it. */
-static void ray_of(const TetcastCamera *camera, int pixel, double eye[3], double direction[3]) {
-  double forward[3], right[3], up[3], length = 0;
-  for (int k = 0; k < 3; ++k)
-    forward[k] = camera->target[k] - camera->eye[k];
-  for (int k = 0; k < 3; ++k)
-    length += forward[k] * forward[k];
-  for (int k = 0; k < 3; ++k)
-    forward[k] /= sqrt(length);
-  length = 0;
-  for (int k = 0; k < 3; ++k)
-    right[k] = forward[(k + 1) % 3] * camera->up[(k + 2) % 3] - forward[(k + 2) % 3] * camera->up[(k + 1) % 3];
-  for (int k = 0; k < 3; ++k)
-    length += right[k] * right[k];
-  for (int k = 0; k < 3; ++k)
-    right[k] /= sqrt(length);
-  for (int k = 0; k < 3; ++k)
-    up[k] = right[(k + 1) % 3] * forward[(k + 2) % 3] - right[(k + 2) % 3] * forward[(k + 1) % 3];
-  const bool parallel = camera->projection == TETCAST_ORTHOGRAPHIC;
-  const double half = parallel ? camera->height / 2 : tan(camera->fovy * acos(-1) / 360);
-  const double u = ((pixel % W + 0.5) / W * 2 - 1) * half * W / H, v = (1 - (pixel / W + 0.5) / H * 2) * half;
-  length = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double shift = u * right[k] + v * up[k];
-    eye[k] = camera->eye[k] + (parallel ? shift : 0);
-    direction[k] = forward[k] + (parallel ? 0 : shift);
-    length += direction[k] * direction[k];
-  }
-  for (int k = 0; k < 3; ++k)
-    direction[k] /= sqrt(length);
-}
-
 /* The part of a ray in [0, sides[k]], from the eye on; false: there is none. */
 static bool chord(const double eye[3], const double direction[3], const double sides[3], double *from, double *to) {
   *from = 0;
@@ -187,7 +111,7 @@ static int check_linear(const TetcastFrame *frame, TetcastBlend blend, const Tet
   int met = 0;
   for (int p = 0; p < PIXELS; ++p) {
     double eye[3], direction[3], from, to, a[3], b[3];
-    ray_of(camera, p, eye, direction);
+    ray_of(camera, W, H, p, eye, direction);
     const bool meets = chord(eye, direction, sides, &from, &to);
     const bool grazes = meets ? to - from < 1e-9 : !isnan(values[p]);
     if (isnan(values[p]))
@@ -207,14 +131,6 @@ static int check_linear(const TetcastFrame *frame, TetcastBlend blend, const Tet
     ++met;
   }
   return met;
-}
-
-static TetcastCamera parallel(double x, double y, double z, double height) {
-  return (TetcastCamera){.eye = {x, y, z},
-                         .target = {0.5, 0.5, 0.5},
-                         .up = {0, 1, 0},
-                         .projection = TETCAST_ORTHOGRAPHIC,
-                         .height = height};
 }
 
 /* Cameras outside, inside, and in parallel along an axis, where rays go through vertices, along edges and within faces:
@@ -261,7 +177,7 @@ static void constant_field_stays_exact(void **state) {
           if (isnan(value))
             continue;
           double eye[3], direction[3], from, to;
-          ray_of(camera, p, eye, direction);
+          ray_of(camera, W, H, p, eye, direction);
           ++met;
           if (blends[blend] != TETCAST_BLEND_ADDITIVE)
             assert_true(value == constants[j]);
@@ -316,7 +232,7 @@ static void nan_counts_for_nothing(void **state) {
           assert_true(check_linear(frame, blends[blend], &cameras[c], sides) > PIXELS / 20);
         for (int p = 0; p < PIXELS && association == TETCAST_CELL; ++p) {
           double eye[3], direction[3], from, to;
-          ray_of(&cameras[c], p, eye, direction);
+          ray_of(&cameras[c], W, H, p, eye, direction);
           const bool meets = chord(eye, direction, sides, &from, &to);
           if (meets && to - from < 1e-9)
             continue;
@@ -356,7 +272,7 @@ static void cells_count_by_their_lengths(void **state) {
       frames[blend] = shoot(&world, blends[blend], &camera);
     for (int p = 0; p < PIXELS; ++p) {
       double eye[3], direction[3];
-      ray_of(&camera, p, eye, direction);
+      ray_of(&camera, W, H, p, eye, direction);
       long double least = INFINITY, most = -INFINITY, integral = 0, length = 0, shortest = INFINITY;
       for (int64_t i = 0; i < cube->cell_count; ++i) {
         long double from = 0, to = INFINITY;

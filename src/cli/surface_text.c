@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "surface_text.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli.h"
+#include "color.h"
+
+/* The part of *text up to the next colon, for free(), and *text behind that; NULL at the end. */
+static char *next_part(const char **text) {
+  if (!*text)
+    return NULL;
+  const size_t length = strcspn(*text, ":");
+  char *part = cli_print("%.*s", (int)length, *text);
+  *text = (*text)[length] ? *text + length + 1 : NULL;
+  return part;
+}
+
+/* A name, #rrggbb, or three numbers r,g,b from 0 to 1. */
+static bool parse_color(const char *text, double color[3]) {
+  double rgba[4];
+  if (cli_parse_numbers(text, ',', 4, rgba) == 3) {
+    for (int k = 0; k < 3; k++)
+      if (!(rgba[k] >= 0 && rgba[k] <= 1))
+        return false;
+  } else if (!color_parse(text, rgba) || rgba[3] != 1) {
+    return false;
+  }
+  memcpy(color, rgba, 3 * sizeof *color);
+  return true;
+}
+
+bool surfaces_parse(const char *text, TetcastIsosurface *isosurface, bool *colored) {
+  *isosurface = (TetcastIsosurface){.opacity = 1};
+  *colored = false;
+  bool fine = true, done = false;
+  char *part = next_part(&text);
+  fine = part && cli_parse_number(part, &isosurface->value) && isfinite(isosurface->value);
+  free(part);
+  while (fine && (part = next_part(&text))) {
+    double opacity;
+    if (cli_parse_number(part, &opacity)) { /* the last */
+      fine = !done && opacity >= 0 && opacity <= 1;
+      isosurface->opacity = opacity;
+      done = true;
+    } else {
+      fine = !done && !*colored && parse_color(part, isosurface->color);
+      *colored = true;
+    }
+    free(part);
+  }
+  return fine;
+}
+
+bool surfaces_parse_light(const char *text, TetcastLight *light) {
+  *light = (TetcastLight){.color = {1, 1, 1}};
+  char *direction = next_part(&text), *color = next_part(&text);
+  const double *d = light->direction;
+  const bool fine = direction && cli_parse_numbers(direction, ',', 3, light->direction) == 3 && isfinite(d[0]) &&
+                    isfinite(d[1]) && isfinite(d[2]) && (d[0] != 0 || d[1] != 0 || d[2] != 0) &&
+                    (!color || parse_color(color, light->color)) && !text;
+  free(direction);
+  free(color);
+  return fine;
+}
