@@ -254,6 +254,11 @@ static TetcastStatus set_transfer_function(Stage *stage, const RenderOptions *op
 
 int stage_prepare(Stage *stage, const RenderOptions *options) {
   const double start = cli_seconds();
+  if (render_options_given(options, OPTION_ISOSURFACE) && tetcast_field_association(stage->field) == TETCAST_CELL) {
+    cli_error("--isosurface: the array %s has a value for each cell; --cell-to-point makes one for points of it",
+              stage->array ? stage->array : "of the mesh");
+    return CLI_FAILED;
+  }
   cli_interrupt_hold(true);
   TetcastStatus status = create_volume(stage, options);
   if (status == TETCAST_OK && !stage->scene)

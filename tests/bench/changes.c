@@ -119,9 +119,21 @@ typedef struct Feature {
   TetcastType type;
   uint32_t channels;
   int samples;
+  int isosurfaces; /* so many, opaque and lit, with nothing else to see; negative: half-transparent, in the volume */
   Times times;
   TetcastRenderStats stats;
 } Feature;
+
+/* At equal distances over the range of the scalar. */
+static void set_isosurfaces(Tet *tet, int count) {
+  TetcastIsosurface list[8];
+  const int surfaces = abs(count);
+  for (int i = 0; i < surfaces; i++) {
+    list[i] = (TetcastIsosurface){
+        .value = (i + 1.0) / (surfaces + 1), .color = {0.9, 0.5, 0.2}, .opacity = count < 0 ? 0.5 : 1};
+  }
+  must(tetcast_scene_set_isosurfaces(tet->scene, list, surfaces) == TETCAST_OK, "isosurfaces");
+}
 
 static TetcastField *make_field(Tet *tet, const BenchMesh *mesh, int values, double *memory) {
   const bool cells = values == 1;
@@ -138,7 +150,9 @@ static TetcastField *make_field(Tet *tet, const BenchMesh *mesh, int values, dou
 }
 
 void job_features(const Job *job) {
-  Transfer colors = transfer_linear, knots = transfer_soft;
+  Transfer colors = transfer_linear, knots = transfer_soft, clear = transfer_linear;
+  for (int i = 0; i < clear.opacity_count; i++)
+    clear.opacity[i][1] = 0;
   colors.color_count = transfer_soft.color_count;
   knots.color_count = 1;
   for (int i = 0; i < transfer_soft.color_count; i++) {
@@ -148,15 +162,17 @@ void job_features(const Job *job) {
   }
   const TetcastType f32 = TETCAST_TYPE_FLOAT32, f64 = TETCAST_TYPE_FLOAT64;
   Feature features[] = {
-      {"one piece and one colour", &transfer_linear, 0, f64, 0, 1, {{0}, {0}}, {0}},
-      {"colours with knots", &colors, 0, f64, 0, 1, {{0}, {0}}, {0}},
-      {"extinction with knots", &knots, 0, f64, 0, 1, {{0}, {0}}, {0}},
-      {"both with knots", &transfer_soft, 0, f64, 0, 1, {{0}, {0}}, {0}},
-      {"field of cells", &transfer_linear, 1, f64, 0, 1, {{0}, {0}}, {0}},
-      {"field the same everywhere", &transfer_linear, 2, f64, 0, 1, {{0}, {0}}, {0}},
-      {"channel of error bounds", &transfer_linear, 0, f64, TETCAST_CHANNEL_ERROR, 1, {{0}, {0}}, {0}},
-      {"frame of float", &transfer_linear, 0, f32, 0, 1, {{0}, {0}}, {0}},
-      {"4 samples a pixel", &transfer_linear, 0, f64, 0, 4, {{0}, {0}}, {0}},
+      {"one piece and one colour", &transfer_linear, 0, f64, 0, 1, 0, {{0}, {0}}, {0}},
+      {"colours with knots", &colors, 0, f64, 0, 1, 0, {{0}, {0}}, {0}},
+      {"extinction with knots", &knots, 0, f64, 0, 1, 0, {{0}, {0}}, {0}},
+      {"both with knots", &transfer_soft, 0, f64, 0, 1, 0, {{0}, {0}}, {0}},
+      {"field of cells", &transfer_linear, 1, f64, 0, 1, 0, {{0}, {0}}, {0}},
+      {"field the same everywhere", &transfer_linear, 2, f64, 0, 1, 0, {{0}, {0}}, {0}},
+      {"channel of error bounds", &transfer_linear, 0, f64, TETCAST_CHANNEL_ERROR, 1, 0, {{0}, {0}}, {0}},
+      {"frame of float", &transfer_linear, 0, f32, 0, 1, 0, {{0}, {0}}, {0}},
+      {"4 samples a pixel", &transfer_linear, 0, f64, 0, 4, 0, {{0}, {0}}, {0}},
+      {"3 opaque lit isosurfaces alone", &clear, 0, f64, 0, 1, 3, {{0}, {0}}, {0}},
+      {"3 lit isosurfaces in the volume", &transfer_linear, 0, f64, 0, 1, -3, {{0}, {0}}, {0}},
   };
   const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
   Tet tet;
@@ -177,6 +193,7 @@ void job_features(const Job *job) {
       Feature *feature = &features[i];
       must(tetcast_scene_set_field(tet.scene, fields[feature->values]) == TETCAST_OK, "set field");
       tet_transfer(&tet, feature->transfer);
+      set_isosurfaces(&tet, feature->isosurfaces);
       TetcastRenderDesc desc = tetcast_render_desc_default();
       desc.samples = feature->samples;
       TetcastFrame *frame = tet_frame(&tet, job->options->pixels, feature->type, feature->channels);
