@@ -8,6 +8,7 @@
 
 #include "base/base.h"
 #include "render/channels.h"
+#include "render/clip.h"
 #include "render/kernel.h"
 #include "volume/shell.h"
 
@@ -50,6 +51,8 @@ struct TetcastScene {
   TetcastTransferFunction *transfer; /* NULL: none set yet, or coefficients */
   TcCoefficients *coefficients;      /* NULL: none set yet, or a transfer function */
   TetcastBlend blend;
+  TcHalfSpace *clip; /* [clip_count]; NULL: none */
+  int clip_count;
   TcPrepared *prepared;
 };
 
@@ -71,6 +74,7 @@ TetcastStatus tc_scene_set_field(TetcastScene *scene, const TetcastField *field)
 void tc_scene_share_field(TetcastScene *scene, const TetcastScene *other);
 TetcastStatus tc_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer);
 TetcastStatus tc_scene_set_coefficients(TetcastScene *scene, const TetcastCoefficientsDesc *desc);
+TetcastStatus tc_scene_set_clip(TetcastScene *scene, const TetcastHalfSpace *half_spaces, int count);
 /* Makes what follows from field and transfer function, if that was not done. */
 TetcastStatus tc_scene_prepare(const TetcastScene *scene);
 /* Takes the memory of projected vertices that the scene keeps, or gives it back; what was there before, or NULL. */
