@@ -697,6 +697,25 @@ TetcastStatus tetcast_scene_set_shading(TetcastScene *scene, const TetcastShadin
   return TETCAST_OK;
 }
 
+TetcastStatus tetcast_scene_set_clip(TetcastScene *scene, const TetcastHalfSpace *half_spaces, int count) {
+  TC_ENTRY;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
+  TetcastContext *context = scene->context;
+  if (count < 0)
+    return ARGUMENT(context, "a clip of %d half-spaces", count);
+  if (count > 0)
+    CHECK_GIVEN(context, half_spaces);
+  for (int i = 0; i < count; ++i) {
+    const double *n = half_spaces[i].normal;
+    if (!isfinite(n[0]) || !isfinite(n[1]) || !isfinite(n[2]) || !isfinite(half_spaces[i].offset))
+      return ARGUMENT(context, "clip: a number of half-space %d is not finite", i);
+    if (n[0] == 0 && n[1] == 0 && n[2] == 0)
+      return ARGUMENT(context, "clip: the normal of half-space %d has length 0", i);
+  }
+  return tc_scene_set_clip(scene, half_spaces, count);
+}
+
 TetcastCoefficientsDesc tetcast_coefficients_desc_default(void) {
   return (TetcastCoefficientsDesc){.cookie = TC_COOKIE};
 }
@@ -822,6 +841,25 @@ static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderD
   return TETCAST_OK;
 }
 
+/* Whether the rays' ends are those of the frame's pixels. */
+static TetcastStatus check_stop(TetcastContext *context, const TetcastArray *stop, const TetcastFrame *frame) {
+  if (!tc_type_is_float(stop->type))
+    return ARGUMENT(context, "stop: the type must be float32 or float64");
+  if (stop->count != frame->width * frame->height) {
+    return ARGUMENT(context, "stop: %" PRId64 " distances for a frame of %" PRId64 " × %" PRId64 " pixels", stop->count,
+                    frame->width, frame->height);
+  }
+  CHECK_GIVEN(context, stop->data);
+  const int64_t stride = tc_array_stride(stop, 1);
+  for (int64_t i = 0; i < stop->count; ++i) {
+    if (isnan(tc_array_double(stop, stride, i, 0))) {
+      return ARGUMENT(context, "stop: the distance of pixel (%" PRId64 ", %" PRId64 ") is NaN", i % frame->width,
+                      i / frame->width);
+    }
+  }
+  return TETCAST_OK;
+}
+
 typedef struct SceneRender {
   const TetcastScene *scene;
   const TetcastCamera *camera;
@@ -864,6 +902,8 @@ TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamer
   TetcastStatus status = check_scene(scene, desc, frame);
   if (!status)
     status = check_camera(context, camera);
+  if (!status && desc->stop)
+    status = check_stop(context, desc->stop, frame);
   SceneRender call = {scene, camera, *desc, frame, stats};
   return status ? status : tc_call(scene_render, &call, &call.desc.progress);
 }

@@ -7,6 +7,7 @@
 #include <tetcast/blend.h>
 #include <tetcast/camera.h>
 #include <tetcast/cells.h>
+#include <tetcast/clip.h>
 #include <tetcast/context.h>
 #include <tetcast/field.h>
 #include <tetcast/frame.h>

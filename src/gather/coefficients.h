@@ -374,11 +374,17 @@ TC_INLINE TcMask tc_groups_complete(const unsigned on, const TcGatherJob *job, T
 /* A bound on the error of a group's opacity and radiance (tolerance.h), in the mesh's unit of length. */
 static double tc_groups_bound(const TcGatherJob *job, const TcGroups *groups, const TcEnding *ending, int l, int g) {
   const TcCoefficients *c = job->coefficients;
-  const double rounding = tc_rounding(ending->steps), depth_error = tc_groups_of(groups, l, g, depth_error);
+  /* Where what is seen jumps, at the shell, at faces of cells that have coefficients of their own, at the ends of the
+   * ray's interval, more or less of it may be seen. */
+  const double shift = (double)TC_AT(ending->shift, l),
+               dimmed = fmin(TC_LARGEST_EXTINCTION, c->largest[g] * c->scale[0] * c->scale[1]) * shift,
+               shone = c->largest[c->groups + g] * c->emission_scale * shift;
+  const double rounding = tc_rounding(ending->steps), depth_error = tc_groups_of(groups, l, g, depth_error) + dimmed;
   const double opacity = depth_error + rounding * -expm1(-tc_groups_of(groups, l, g, depth)),
                growth = depth_error < 700 ? exp(depth_error) : INFINITY;
   const double emitted = tc_groups_of(groups, l, g, emitted) * (1 + rounding) * growth;
-  const double radiance = growth * tc_groups_of(groups, l, g, radiance_error) + emitted * (depth_error + rounding);
+  const double radiance =
+      growth * (tc_groups_of(groups, l, g, radiance_error) + shone) + emitted * (depth_error + rounding);
   return fmax(opacity < 1 ? opacity : 1, c->emission_count ? ldexp(radiance, job->exponent + c->emission_exponent) : 0);
 }
 

@@ -4,6 +4,7 @@
 #include "render/kernel.h"
 
 #include "gather/gather.h"
+#include "walk/interval.h"
 #include "walk/queue.h"
 
 enum {
@@ -85,7 +86,7 @@ TC_INLINE TcMask add_segment(const int which, const unsigned on, const TcGround 
   passage.length = z1 - from;
   if (on & TC_BOUND)
     passage.spread = spread_of(on, ground, p, crossed, passage.length);
-  if (on & TC_BOUND && on & TC_ASSOCIATIONS)
+  if (on & TC_BOUND && on & TC_ASSOCIATIONS && (!(on & TC_WEIGHTS) || job->coefficients->cells))
     p->shift += tc_select(moved, tc_packet_shift(ground, p), tc_set(0));
   tc_gather_segment(which, on, job, &packet->gather, moved, &passage);
   return ends;
@@ -266,7 +267,7 @@ static void begin_packet(const int which, bool directed, const TcGatherJob *job,
   p->starting = p->waiting = p->stopped = 0;
   p->lost = waiting->doubtful;
   p->seen = p->rays.begin;
-  p->shift = tc_set(0);
+  p->shift = p->rays.doubt;
   p->steps = 0;
   unsigned starting = 0;
   TC_EACH_LANE {
@@ -393,11 +394,16 @@ static bool run_packets(const TcJob *job, State *state, TcWorker *worker, const 
   }
 }
 
-/* Places rays. Those that pass the volume are left out, and gather at once what a ray does that meets nothing: of
- * groups, a transmittance of 1. */
-static void place_rays(const TcJob *job, const TcGround *ground, double *sums, TcPlaced *placed) {
+/* Places rays that end at `stop` (NULL: they don't), and clips them. Those that pass the volume, or of which nothing
+ * counts, are left out, and gather at once what a ray does that meets nothing: of groups, a transmittance of 1. */
+static void place_rays(const TcJob *job, const TcGround *ground, const TcWide *stop, double *sums, TcPlaced *placed) {
   unsigned left_out = placed->lanes;
   tc_place(ground, placed);
+  const double radius = ground->shell->volume->radius;
+  if (job->clip_count > 0)
+    tc_clip(job->clip, job->clip_count, radius, job->interval_error, placed);
+  if (stop)
+    tc_stop(stop, radius, job->interval_error, placed);
   left_out &= ~placed->lanes;
   for (; TC_UNLIKELY(job->coefficients != NULL) && left_out; left_out &= left_out - 1) {
     double *of_ray = sums + PIXEL_OF(placed->destination[__builtin_ctz(left_out)]) * job->sums;
@@ -420,6 +426,17 @@ typedef struct Tile {
   double *sums;
 } Tile;
 
+/* The distances at which the rays through places of the grid of samples stop, scaled. */
+TC_NOINLINE void find_stops(const TcJob *job, const TcWide *column, const TcWide *row, unsigned lanes, TcWide *stop) {
+  *stop = tc_set_wide(0);
+  for (; lanes; lanes &= lanes - 1) {
+    const int l = __builtin_ctz(lanes);
+    const int64_t x = (int64_t)TC_AT(*column, l) / job->samples_x, y = (int64_t)TC_AT(*row, l) / job->samples_y;
+    const double distance = tc_array_double(job->stop, tc_array_stride(job->stop, 1), y * job->width + x, 0);
+    TC_AT(*stop, l) = ldexp(distance, -job->shell->volume->exponent);
+  }
+}
+
 /* Places the rays through places of the grid of samples, one in each lane. */
 static void place_samples(const TcJob *job, const TcGround *ground, const TcWide *column, const TcWide *row,
                           double *sums, TcPlaced *placed) {
@@ -435,7 +452,10 @@ static void place_samples(const TcJob *job, const TcGround *ground, const TcWide
   lines->begin = tc_set_wide(0);
   lines->end = tc_set_wide(INFINITY);
   tc_view_lines(&job->view, &u, &v, lines);
-  place_rays(job, ground, sums, placed);
+  TcWide stop;
+  if (job->stop)
+    find_stops(job, column, row, placed->lanes, &stop);
+  place_rays(job, ground, job->stop ? &stop : NULL, sums, placed);
 }
 
 /* Places the rays of the next packet of pixels. */
@@ -600,7 +620,7 @@ static void place_cast(Cast *cast) {
     if (cast->next++ < cast->count)
       placed->lanes |= 1U << l;
   }
-  place_rays(cast->job, cast->ground, cast->sums, placed);
+  place_rays(cast->job, cast->ground, NULL, cast->sums, placed);
 }
 
 static bool next_of_cast(void *user, TcQueue *queue) {

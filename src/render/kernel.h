@@ -8,6 +8,7 @@
 #include "optics/tolerance.h"
 #include "volume/coefficients.h"
 #include "volume/surfaces.h"
+#include "walk/clip.h"
 #include "walk/features.h"
 #include "walk/hits.h"
 #include "walk/ray.h"
@@ -47,11 +48,15 @@ typedef struct TcJob {
   bool to_the_end;                    /* of coefficients: all is wanted, though all groups be opaque */
   const struct TcIsaKernels *precise; /* single precision: those in which rays are walked again, */
   const struct TcJob *precise_job;    /* and what for */
+  const TcHalfSpace *clip;            /* [clip_count]: what lies in all of them is seen */
+  int clip_count;
+  double interval_error; /* how far off the end of a ray's interval may be at a plane that it meets at right angles */
 
   /* Of pictures: */
   TcView view;
   int64_t width, height;
   int samples_x, samples_y;
+  const TetcastArray *stop; /* [height][width]: where rays end, in the mesh's unit; NULL: they don't */
 } TcJob;
 
 /* What a worker keeps to itself. */

@@ -311,6 +311,7 @@ static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *de
     away2 += (scene->volume->center[k] - job->view.eye[k]) * (scene->volume->center[k] - job->view.eye[k]);
   const double largest = scene->values ? scene->values->largest : 0;
   const TcResolution in_ray_space = tc_ray_resolution(scene->volume, sqrt(away2), largest);
+  job->interval_error = tc_clip_error(scene->volume, sqrt(away2));
   job->resolution =
       on_screen ? tc_screen_resolution(scene->volume, &setup, false, job->width, job->height, largest) : in_ray_space;
   if (job->pieces)
@@ -384,6 +385,9 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   if (status)
     return status;
   job->sampler = sampler;
+  job->clip = scene->clip;
+  job->clip_count = scene->clip_count;
+  job->stop = desc->stop;
   job->to_the_end =
       tc_frame_channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH) || tc_frame_channel(frame, TETCAST_CHANNEL_PATH_LENGTH);
   tc_job_of_scene(scene, measured, job);

@@ -8,6 +8,7 @@
 
 #include "base/base.h"
 #include "render/channels.h"
+#include "render/clip.h"
 #include "render/kernel.h"
 #include "volume/shell.h"
 
@@ -55,6 +56,8 @@ struct TetcastScene {
   TetcastIsosurface *isosurfaces; /* [isosurface_count], values ascending, in the field's unit */
   int isosurface_count;
   TcLighting lighting;
+  TcHalfSpace *clip; /* [clip_count]; NULL: none */
+  int clip_count;
   TcPrepared *prepared;
 };
 
@@ -84,6 +87,7 @@ TetcastStatus tc_scene_surfaces(const TetcastScene *scene, TcSurfaces *surfaces)
 /* What follows from field, transfer function and isosurfaces is to be made anew. */
 void tc_scene_forget(TetcastScene *scene);
 TetcastStatus tc_scene_set_coefficients(TetcastScene *scene, const TetcastCoefficientsDesc *desc);
+TetcastStatus tc_scene_set_clip(TetcastScene *scene, const TetcastHalfSpace *half_spaces, int count);
 /* Makes what follows from field and transfer function, if that was not done. */
 TetcastStatus tc_scene_prepare(const TetcastScene *scene);
 /* Takes the memory of projected vertices that the scene keeps, or gives it back; what was there before, or NULL. */

@@ -95,6 +95,7 @@ void tc_scene_destroy(TetcastScene *scene) {
   tc_rows_release(scene->values);
   tc_transfer_destroy(scene->transfer);
   tc_coefficients_destroy(scene->coefficients);
+  tc_release(scene->context, scene->clip);
   tc_release(scene->context, scene);
 }
 
@@ -141,4 +142,16 @@ TetcastStatus tc_scene_set_coefficients(TetcastScene *scene, const TetcastCoeffi
   if (!status)
     replace(scene, NULL, copy);
   return status;
+}
+
+TetcastStatus tc_scene_set_clip(TetcastScene *scene, const TetcastHalfSpace *half_spaces, int count) {
+  TcHalfSpace *clip;
+  int kept;
+  const TetcastStatus status = tc_clip_create(scene->volume, half_spaces, count, &clip, &kept);
+  if (status)
+    return status;
+  tc_release(scene->context, scene->clip);
+  scene->clip = clip;
+  scene->clip_count = kept;
+  return TETCAST_OK;
 }

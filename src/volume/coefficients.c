@@ -60,14 +60,17 @@ static TetcastStatus check_list(const TetcastVolume *volume, const List *list, b
 
 /* ── binding ── */
 
+static double largest_of(const List *list, int i) {
+  double range[2];
+  tc_field_range(list->fields[i], range, NULL);
+  return fmax(fabs(range[0]), fabs(range[1]));
+}
+
 /* The exponent of the largest emission. */
 static int emission_exponent(const List *emission) {
   double largest = 0;
-  for (int i = 0; i < emission->count; ++i) {
-    double range[2];
-    tc_field_range(emission->fields[i], range, NULL);
-    largest = fmax(largest, fmax(fabs(range[0]), fabs(range[1])));
-  }
+  for (int i = 0; i < emission->count; ++i)
+    largest = fmax(largest, largest_of(emission, i));
   int exponent = 0;
   if (largest > 0)
     frexp(largest, &exponent);
@@ -91,15 +94,21 @@ static TetcastStatus bind_association(const TetcastVolume *volume, const List li
 }
 
 static TetcastStatus bind_all(const TetcastVolume *volume, const List lists[2], TcCoefficients *c) {
-  if (!tc_allocate_array(c->context, (void **)&c->slots, 2 * (int64_t)c->groups, sizeof *c->slots, "coefficients"))
+  if (!tc_allocate_array(c->context, (void **)&c->slots, 2 * (int64_t)c->groups, sizeof *c->slots, "coefficients") ||
+      !tc_allocate_array(c->context, (void **)&c->largest, 2 * (int64_t)c->groups, sizeof *c->largest, "coefficients"))
     return TETCAST_ERROR_MEMORY;
   int *const slots[2] = {c->slots, c->slots + c->groups};
   TetcastStatus status = bind_association(volume, lists, TETCAST_POINT, 0, slots, &c->points);
   if (!status)
     status = bind_association(volume, lists, TETCAST_CELL, c->points ? c->points->width : 0, slots, &c->cells);
   for (int l = 0; !status && l < 2; ++l) {
-    for (int g = lists[l].count; g < c->groups; ++g)
+    double *largest = c->largest + l * c->groups;
+    for (int g = 0; g < lists[l].count; ++g)
+      largest[g] = largest_of(&lists[l], g);
+    for (int g = lists[l].count; g < c->groups; ++g) {
       slots[l][g] = lists[l].count ? slots[l][0] : -1;
+      largest[g] = lists[l].count ? largest[0] : 0;
+    }
   }
   return status;
 }
@@ -141,5 +150,6 @@ void tc_coefficients_destroy(TcCoefficients *c) {
   tc_rows_release(c->points);
   tc_rows_release(c->cells);
   tc_release(c->context, c->slots);
+  tc_release(c->context, c->largest);
   tc_release(c->context, c);
 }

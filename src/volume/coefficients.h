@@ -14,6 +14,7 @@ typedef struct TcCoefficients {
   TcRows *points, *cells; /* NULL: none */
   int groups, extinction_count, emission_count;
   int *slots;      /* [2 groups]: that of each group's extinction, then of its emission; −1: none */
+  double *largest; /* [2 groups], as `slots`: the largest magnitude of its values; 0: none */
   double scale[2]; /* extinction times both is that of the volume's unit of length */
   /* Emission is counted in this power of two, near the largest: times what an opaque segment lets out, it does not
    * underflow. */

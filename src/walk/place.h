@@ -17,6 +17,8 @@ typedef struct TcPlaced {
   TcLines lines;
   TcWide from_center[3];     /* of the points where they are nearest to the volume's centre */
   TcWide near;               /* these points' depths: distances from eye + offset */
+  TcWide begin, end;         /* the interval that counts, as depths from these points */
+  TcWide doubt;              /* how far off its ends may be, in all (interval.h) */
   TcWide origin[3], rest[3]; /* in ray space: the same points, as the sum of two numbers */
   int64_t destination[TC_LANES];
   unsigned lanes;
@@ -73,22 +75,29 @@ static void tc_place(const TcGround *ground, TcPlaced *placed) {
     p[k] += along * lines->direction[k];
   if (!ground->screen)
     tc_place_exactly(volume, placed);
+  placed->begin = lines->begin - along;
+  placed->end = lines->end - along;
+  placed->doubt = tc_set_wide(0);
   const TcWide radius = tc_set_wide(volume->radius);
   const unsigned inside = tc_wide_le(p[0] * p[0] + p[1] * p[1] + p[2] * p[2], radius * radius);
-  placed->lanes &= inside & tc_wide_le(lines->begin - along, radius) & tc_wide_le(-radius, lines->end - along);
+  placed->lanes &= inside & tc_wide_le(placed->begin, radius) & tc_wide_le(-radius, placed->end);
 }
 
 /* Rays on the screen. */
 static void tc_take_screen(const TcScreen *screen, const TcPlaced *placed, TcRays *rays) {
   const TcLines *lines = &placed->lines;
-  TcWide shift = tc_set_wide(-screen->distance); /* of depths against distances from the eye */
-  if (screen->perspective) {
-    shift /= lines->direction[0] * screen->forward[0] + lines->direction[1] * screen->forward[1] +
-             lines->direction[2] * screen->forward[2];
+  TcWide shift = tc_set_wide(0), along = shift; /* depth of the points that were placed, from the centre's plane */
+  for (int k = 0; k < 3; ++k) {
+    shift += placed->from_center[k] * screen->forward[k];
+    along += lines->direction[k] * screen->forward[k];
   }
-  rays->scale = screen->perspective ? tc_real_of_wide(shift) : tc_set(1);
-  rays->begin = tc_real_of_wide(lines->begin + shift);
-  rays->end = tc_real_of_wide(lines->end + shift);
+  rays->scale = tc_set(1);
+  if (screen->perspective) {
+    rays->scale = tc_real_of_wide(-screen->distance / along);
+    shift /= along;
+  }
+  rays->begin = tc_real_of_wide(placed->begin + shift);
+  rays->end = tc_real_of_wide(placed->end + shift);
 #if TC_SINGLE
   TC_EACH_LANE TC_AT(rays->x, l) = (int32_t)rint(TC_AT(lines->x, l) * screen->unit);
   TC_EACH_LANE TC_AT(rays->y, l) = (int32_t)rint(TC_AT(lines->y, l) * screen->unit);
@@ -116,8 +125,8 @@ TC_NOINLINE void tc_take_ray_space(const TcPlaced *placed, int kz, TcRays *rays)
   rays->rest_x = TC_NOT_TINY(rest[kx] - rays->shear_x * rest[kz]);
   rays->rest_y = TC_NOT_TINY(rest[ky] - rays->shear_y * rest[kz]);
   rays->rest_z = rest[kz] * rays->inverse_z;
-  rays->begin = placed->lines.begin - placed->near;
-  rays->end = placed->lines.end - placed->near;
+  rays->begin = placed->begin;
+  rays->end = placed->end;
 #undef TC_NOT_TINY
 }
 
@@ -142,7 +151,11 @@ static unsigned tc_along_one_axis(const TcLines *lines, unsigned lanes, int *kz)
  * are placed. */
 static unsigned tc_take(const TcGround *ground, TcPlaced *placed, TcRays *rays) {
   unsigned lanes = placed->lanes;
-#if !TC_SINGLE
+  rays->doubt = tc_real_of_wide(placed->doubt);
+#if TC_SINGLE
+  /* Its ends are rounded once more. */
+  rays->doubt += tc_select(tc_lt(tc_set(0), rays->doubt), tc_set((TcReal)ground->resolution.depth), tc_set(0));
+#else
   if (!ground->screen) {
     int kz = 0;
     lanes = tc_along_one_axis(&placed->lines, lanes, &kz);

@@ -35,6 +35,7 @@ typedef struct TcRays {
 #endif
   TcVec scale;      /* what depths are multiplied with: −distance |direction| in perspective, else 1 */
   TcVec begin, end; /* the interval of depths that counts */
+  TcVec doubt;      /* how far off its ends may be, in all */
   /* Ray space: */
   TcVec origin[3]; /* along kx, ky, kz, near the volume; what rounding took from it is in rest_x, rest_y, rest_z,
                       sheared */

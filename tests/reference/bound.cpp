@@ -251,6 +251,52 @@ void see_edge_on(Random &random, Case &c) {
   turn(camera.target), turn(camera.eye), turn(camera.up);
 }
 
+/* Planes in any direction, or across an axis or nearly so, or all but parallel to the direction of view, through any
+ * part of the mesh, by numbers of any scale. */
+void add_clip(Random &random, Case &c, double size, const Point &middle) {
+  const int count = 1 + random.below(3);
+  const Camera &camera = c.scene.camera;
+  for (int i = 0; i < count; i++) {
+    double normal[3], offset = 0;
+    for (double &n : normal)
+      n = random.between(-1, 1);
+    const int axis = random.below(8);
+    for (int k = 0; k < 3 && axis < 3; k++)
+      normal[k] = k == axis ? (random.chance(0.5) ? 1 : -1) : random.chance(0.5) ? 0 : normal[k] * random.power(-17, -1);
+    if (axis == 3) { /* perpendicular to the view, but for a little */
+      double forward[3], along = 0, square = 0;
+      for (size_t k = 0; k < 3; k++)
+        forward[k] = camera.target[k] - camera.eye[k], square += forward[k] * forward[k];
+      for (size_t k = 0; k < 3; k++)
+        along += normal[k] * forward[k] / square;
+      for (size_t k = 0; k < 3; k++)
+        normal[k] -= along * forward[k] * (random.chance(0.3) ? 1 : 1 - random.power(-16, -1));
+    }
+    const double scale = random.chance(0.2) ? random.power(-250, 250) : 1;
+    for (size_t k = 0; k < 3; k++) {
+      normal[k] *= scale;
+      offset += normal[k] * (middle[k] + size * random.between(-0.3, 0.3));
+    }
+    c.scene.clip.push_back({normal[0], normal[1], normal[2], offset});
+  }
+  c.kind += ", clip";
+}
+
+/* A surface of any depth through the mesh; some pixels end nowhere, at the eye or behind it. */
+void add_stop(Random &random, Case &c, double size) {
+  double away = 0;
+  const Camera &camera = c.scene.camera;
+  for (size_t k = 0; k < 3; k++)
+    away += std::pow(camera.target[k] - camera.eye[k], 2);
+  for (int64_t i = 0; i < pixels; i++) {
+    double stop = std::sqrt(away) + size * random.between(-0.7, 0.7);
+    if (random.chance(0.1))
+      stop = random.chance(0.7) ? HUGE_VAL : random.chance(0.5) ? 0 : -size;
+    c.scene.stop.push_back(stop);
+  }
+  c.kind += ", stop";
+}
+
 Case random_case(uint64_t seed) {
   Random random{seed * 7919 + 1};
   random();
@@ -265,6 +311,8 @@ Case random_case(uint64_t seed) {
   c.scene.camera = random_camera(random, size, middle, c.kind);
   if (random.chance(0.1)) {
     see_edge_on(random, c);
+    size = 1;
+    std::copy(c.scene.camera.target, c.scene.camera.target + 3, middle.begin());
     c.scene.transfer = random_transfer(random, 1);
   }
   Mesh &mesh = c.scene.mesh;
@@ -291,6 +339,10 @@ Case random_case(uint64_t seed) {
         value = NAN;
     c.kind = "holes, " + c.kind;
   }
+  if (random.chance(0.4))
+    add_clip(random, c, size, middle);
+  if (random.chance(0.2))
+    add_stop(random, c, size);
   c.single = random.chance(0.3);
   if (c.single) {
     round_to_single(mesh);
@@ -406,7 +458,13 @@ Picture render(const Case &c) {
   camera.projection = from.orthographic ? TETCAST_ORTHOGRAPHIC : TETCAST_PERSPECTIVE;
   camera.fovy = from.fovy;
   camera.height = from.height;
+  std::vector<TetcastHalfSpace> clip;
+  for (const auto &plane : c.scene.clip)
+    clip.push_back({{plane[0], plane[1], plane[2]}, plane[3]});
+  assert_int_equal(tetcast_scene_set_clip(scene, clip.data(), int(clip.size())), TETCAST_OK);
   TetcastRenderDesc desc = tetcast_render_desc_default();
+  const TetcastArray stop = {c.scene.stop.data(), TETCAST_TYPE_FLOAT64, int64_t(c.scene.stop.size()), 0};
+  desc.stop = c.scene.stop.empty() ? nullptr : &stop;
   desc.samples = int(c.scene.samples * c.scene.samples);
   desc.isa = c.isa;
   desc.tolerance = c.tolerance;
@@ -471,7 +529,7 @@ template <class Real> struct Truth {
     const size_t groups = casters.size() / 2;
     std::array<Real, 4> sum{};
     for (int64_t k = 0; k < n * n; k++) {
-      Ray<Real> ray = camera_ray<Real>(c.scene, x + (k % n + Real(0.5)) / n, y + (k / n + Real(0.5)) / n);
+      Ray<Real> ray = sample_ray<Real>(c.scene, x, y, k);
       ray.aside = ray.aside + shift;
       Real mean = 0, radiance[16];
       for (size_t g = 0; g < groups; g++) {

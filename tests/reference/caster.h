@@ -21,6 +21,7 @@ template <class Real> struct Ray {
   Vector<Real> origin;
   Vector<Real> direction; /* of length one */
   Vector<Real> aside{};   /* to be added to the origin: the sum may have more digits than Real, far from zero */
+  Real end = HUGE_VAL;    /* where it ends */
 };
 
 /* The ray through the point (x, y) of the picture: 0, 0 is its upper left corner and width, height its lower right. */
@@ -37,6 +38,33 @@ template <class Real> Ray<Real> camera_ray(const Scene &scene, Real x, Real y) {
   if (camera.orthographic)
     return {eye, forward, offset};
   return {eye, normalized(forward + offset), {}};
+}
+
+/* Sample k of pixel (i, j). */
+template <class Real> Ray<Real> sample_ray(const Scene &scene, int64_t i, int64_t j, int64_t k) {
+  const int64_t n = scene.samples;
+  Ray<Real> ray = camera_ray<Real>(scene, i + (k % n + Real(0.5)) / n, j + (k / n + Real(0.5)) / n);
+  if (!scene.stop.empty())
+    ray.end = scene.stop[size_t(j * scene.width + i)];
+  return ray;
+}
+
+/* What of a ray the scene's half-spaces leave, and its own end. False: nothing. */
+template <class Real> bool interval_of(const Scene &scene, const Ray<Real> &ray, Real &begin, Real &end) {
+  begin = 0;
+  end = ray.end;
+  for (const auto &plane : scene.clip) {
+    const Vector<Real> normal = vector_from<Real>(plane.data());
+    const Real distance = dot(normal, ray.origin) - plane[3] + dot(normal, ray.aside);
+    const Real speed = dot(normal, ray.direction);
+    if (speed > 0)
+      begin = std::max(begin, -distance / speed);
+    else if (speed < 0)
+      end = std::min(end, -distance / speed);
+    else if (distance < 0)
+      return false;
+  }
+  return begin < end;
 }
 
 /* Six times the signed volume; `scale` receives the sum of the products' magnitudes that it is made of. */
@@ -141,6 +169,9 @@ public:
    * not defined. */
   std::vector<Segment<Real>> segments(const Ray<Real> &ray, bool *folded = nullptr) const {
     std::vector<Segment<Real>> found;
+    Real begin, end;
+    if (!interval_of(scene_, ray, begin, end))
+      return found;
     for (size_t i : candidates(ray)) {
       std::array<Vector<Real>, 4> p;
       for (size_t j = 0; j < 4; j++)
@@ -151,13 +182,29 @@ public:
         found.push_back(segment);
     }
     std::sort(found.begin(), found.end(), [](const auto &a, const auto &b) { return a.t0 < b.t0; });
-    Real end = 0;
+    Real seen = 0;
     for (const auto &segment : found) {
-      if (folded && std::min(end, segment.t1) - segment.t0 > Real(1e-15) * segment.t1)
+      if (folded && std::min(seen, segment.t1) - segment.t0 > Real(1e-15) * segment.t1)
         *folded = true;
-      end = std::max(end, segment.t1);
+      seen = std::max(seen, segment.t1);
     }
-    return found;
+    std::vector<Segment<Real>> left;
+    for (const auto &segment : found) {
+      if (!(segment.t0 < end && segment.t1 > begin))
+        continue;
+      Segment<Real> part = segment;
+      const Real slope = (segment.s1 - segment.s0) / (segment.t1 - segment.t0);
+      if (segment.t0 < begin) {
+        part.t0 = begin;
+        part.s0 += (begin - segment.t0) * slope;
+      }
+      if (segment.t1 > end) {
+        part.t1 = end;
+        part.s1 += (end - segment.t1) * slope;
+      }
+      left.push_back(part);
+    }
+    return left;
   }
 
   std::array<Real, 4> ray_rgba(const Ray<Real> &ray, bool *folded = nullptr) const {
@@ -173,8 +220,7 @@ public:
     std::array<Real, 4> sum{};
     const int64_t n = scene_.samples;
     for (int64_t k = 0; k < n * n; k++) {
-      const Real x = i + (k % n + Real(0.5)) / n, y = j + (k / n + Real(0.5)) / n;
-      Ray<Real> ray = camera_ray<Real>(scene_, x, y);
+      Ray<Real> ray = sample_ray<Real>(scene_, i, j, k);
       ray.aside = ray.aside + shift;
       const auto rgba = ray_rgba(ray, folded);
       for (size_t c = 0; c < 4; c++)

@@ -172,6 +172,7 @@ Scene read_scene(const std::string &path) {
     if (double(scene.samples * scene.samples) != number(samples, "samples"))
       throw Error(path + ": samples: only squares are known here");
   }
+  scene.clip = knots<4>(json_object_get(json.get(), "clip"), "clip");
   scene.mesh = read_mesh((folder / input).string(), array);
   return scene;
 }

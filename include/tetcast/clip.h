@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#ifndef TETCAST_CLIP_H
+#define TETCAST_CLIP_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The points x with normal · x ≥ offset, in the mesh's coordinates: what lies on a plane belongs to it. */
+typedef struct TetcastHalfSpace {
+  double normal[3]; /* points to what is kept; of any length above 0, finite */
+  double offset;    /* finite; in the unit of the coordinates times that of `normal` */
+} TetcastHalfSpace;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

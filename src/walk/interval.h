@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What of a ray counts: its interval, from where it enters the last of the half-spaces that it is clipped to, to where
+ * it leaves the first of them. All of it happens where rays are placed, in double precision; the kernels' loop knows
+ * nothing of half-spaces.
+ *
+ * With P the placed ray's point, D its direction and n, f the half-space's normal and value at the volume's centre,
+ *
+ *     f(z) = (f + n · P) + z n · D
+ *
+ * is its value at the depth z from P, and the plane is met at z = −(f + n · P) / n · D. Let u = 2⁻⁵³, R the volume's
+ * radius and A the distance of its centre from the camera's eye, so that an orthographic ray starts within 2 A + R.
+ * Where the plane cuts the ray within the sphere, |f + n · P| ≤ |n| R, |z| ≤ R and
+ *
+ *     P is off by              4 u (2 A + R) by its direction, which was rounded, and in an orthographic view by
+ *                              5 u (A + R) as its start was, and on the screen by u (4 A + 2 R) in the sums that make
+ * it, f + n · P is off by      |n| times that, and 6 u |n| R by products and sums, z n · D is off by        7 u |n| R,
+ *
+ * in all less than u |n| (17 A + 24 R). With what dividing costs, and what moves depths to where the screen has its 0,
+ * z is off by less than
+ *
+ *     40 u (A + R) |n| / |n · D|.
+ *
+ * That is how far an end of the interval may be off: `doubt`, which counts as the shift of a face at which what is seen
+ * jumps (tolerance.h). It is no more than the sphere's diameter. Distances at which rays stop have the same with n = D.
+ */
+#ifndef TC_WALK_INTERVAL_H
+#define TC_WALK_INTERVAL_H
+
+#include "walk/place.h"
+
+/* Clips ray l to a half-space. `most`: how far an end may be off where the ray is perpendicular to the plane. False:
+ * none of the ray counts, whatever was rounded. */
+static bool tc_clip_lane(const TcHalfSpace *half_space, double radius, double most, TcPlaced *placed, int l) {
+  double value = half_space->at_center, slope = 0;
+  for (int k = 0; k < 3; ++k) {
+    value += half_space->normal[k] * TC_AT(placed->from_center[k], l);
+    slope += half_space->normal[k] * TC_AT(placed->lines.direction[k], l);
+  }
+  const double steepness = fabs(slope), reach = steepness * radius, slack = most * half_space->length;
+  if (value - reach > slack)
+    return true; /* all that the ray has in the sphere lies inside */
+  if (value + reach < -slack)
+    return false;
+  const double at = -value / slope, doubt = slack / steepness;
+  if (slope > 0)
+    TC_AT(placed->begin, l) = fmax(TC_AT(placed->begin, l), at);
+  else if (slope < 0)
+    TC_AT(placed->end, l) = fmin(TC_AT(placed->end, l), at);
+  else if (value < 0) /* parallel to the plane, and beyond it; in the plane it is kept */
+    TC_AT(placed->end, l) = -INFINITY;
+  TC_AT(placed->doubt, l) += doubt < 2 * radius ? doubt : 2 * radius;
+  return true;
+}
+
+/* Clips the rays, and leaves out those of which nothing counts. */
+static void tc_clip(const TcHalfSpace *half_spaces, int count, double radius, double most, TcPlaced *placed) {
+  for (unsigned lanes = placed->lanes; lanes; lanes &= lanes - 1) {
+    const int l = __builtin_ctz(lanes);
+    bool any = true;
+    for (int i = 0; i < count && any; ++i)
+      any = tc_clip_lane(&half_spaces[i], radius, most, placed, l);
+    if (!any || TC_AT(placed->begin, l) - TC_AT(placed->end, l) > TC_AT(placed->doubt, l))
+      placed->lanes &= ~(1U << l);
+  }
+}
+
+/* Rays end at these distances from where they start, scaled. Those that end before the sphere are left out. */
+static void tc_stop(const TcWide *distance, double radius, double most, TcPlaced *placed) {
+  for (unsigned lanes = placed->lanes; lanes; lanes &= lanes - 1) {
+    const int l = __builtin_ctz(lanes);
+    const double end = TC_AT(*distance, l) - TC_AT(placed->near, l);
+    if (end - most > radius)
+      continue;
+    if (end + most < -radius || TC_AT(placed->begin, l) - end > most) {
+      placed->lanes &= ~(1U << l);
+      continue;
+    }
+    TC_AT(placed->end, l) = fmin(TC_AT(placed->end, l), end);
+    TC_AT(placed->doubt, l) += most;
+  }
+}
+
+#endif
