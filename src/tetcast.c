@@ -647,6 +647,49 @@ TetcastStatus tetcast_scene_set_isosurfaces(TetcastScene *scene, const TetcastIs
   return tc_scene_set_isosurfaces(scene, isosurfaces, count);
 }
 
+TetcastStatus tetcast_scene_set_slices(TetcastScene *scene, const TetcastSlice *slices, int count) {
+  TC_ENTRY;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
+  TetcastContext *context = scene->context;
+  if (count < 0 || count > TETCAST_MAX_SLICES)
+    return ARGUMENT(context, "%d slices: at most %d are possible", count, TETCAST_MAX_SLICES);
+  if (count > 0)
+    CHECK_GIVEN(context, slices);
+  for (int i = 0; i < count; ++i) {
+    const double *n = slices[i].normal;
+    if (!isfinite(n[0]) || !isfinite(n[1]) || !isfinite(n[2]) || !isfinite(slices[i].offset))
+      return ARGUMENT(context, "slice %d: a number is not finite", i);
+    if (n[0] == 0 && n[1] == 0 && n[2] == 0)
+      return ARGUMENT(context, "slice %d: the normal has length 0", i);
+    if (!(slices[i].opacity >= 0 && slices[i].opacity <= 1))
+      return ARGUMENT(context, "slice %d: an opacity of %g, must be in [0, 1]", i, slices[i].opacity);
+  }
+  if (count > 0)
+    memcpy(scene->slices, slices, (size_t)count * sizeof *slices);
+  scene->slice_count = count;
+  tc_scene_forget(scene);
+  return TETCAST_OK;
+}
+
+TetcastStatus tetcast_scene_set_boundary(TetcastScene *scene, const TetcastBoundary *boundary) {
+  TC_ENTRY;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
+  TetcastContext *context = scene->context;
+  if (boundary && !(boundary->opacity >= 0 && boundary->opacity <= 1))
+    return ARGUMENT(context, "boundary: an opacity of %g, must be in [0, 1]", boundary->opacity);
+  if (boundary && boundary->colored && !is_color(boundary->color))
+    return ARGUMENT(context, "boundary: a colour is negative or not finite");
+  if (boundary && boundary->opacity > 0 && scene->volume->traversal == TETCAST_TRAVERSAL_FACES)
+    return ARGUMENT(context, "the mesh's boundary is seen by the traversal shell only");
+  scene->boundary = boundary ? *boundary : (TetcastBoundary){.opacity = 0};
+  if (!scene->boundary.colored)
+    memset(scene->boundary.color, 0, sizeof scene->boundary.color);
+  tc_scene_forget(scene);
+  return TETCAST_OK;
+}
+
 TetcastShadingDesc tetcast_shading_desc_default(void) {
   return (TetcastShadingDesc){.cookie = TC_COOKIE,
                               .shade = TETCAST_SHADE_SURFACES,
@@ -820,20 +863,21 @@ static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderD
     return ARGUMENT(context, "with coefficients there is only the exact integrator");
   if (!c && !scene->values)
     return ARGUMENT(context, "the scene has no field yet");
-  if (scene->isosurface_count > 0) {
+  if (tc_scene_has_surfaces(scene)) {
     if (c)
-      return ARGUMENT(context, "with coefficients there are no isosurfaces");
+      return ARGUMENT(context, "with coefficients there are no surfaces");
     if (scene->blend)
-      return ARGUMENT(context, "isosurfaces are seen in the blend mode composite only");
+      return ARGUMENT(context, "surfaces are seen in the blend mode composite only");
     if (!exact)
-      return ARGUMENT(context, "isosurfaces are seen by the exact integrator only");
+      return ARGUMENT(context, "surfaces are seen by the exact integrator only");
     if (error)
-      return ARGUMENT(context, "with isosurfaces there is no channel for the error");
-    if (scene->values->association == TETCAST_CELL)
-      return ARGUMENT(context, "isosurfaces need a field of points or corners, and this one is constant in each cell");
-  } else if (!c && !scene->transfer) {
-    return ARGUMENT(context, "the scene has no transfer function yet");
+      return ARGUMENT(context, "with surfaces there is no channel for the error");
   }
+  if (scene->isosurface_count > 0 && scene->values->association == TETCAST_CELL)
+    return ARGUMENT(context, "isosurfaces need a field of points or corners, and this one is constant in each cell");
+  const bool colored = scene->isosurface_count > 0 && scene->slice_count == 0 && !(scene->boundary.opacity > 0);
+  if (!c && !scene->transfer && !colored)
+    return ARGUMENT(context, "the scene has no transfer function yet");
   if (!exact && (desc->tolerance > 0 || error)) {
     return ARGUMENT(context, "only the exact integrator knows its error: no %s with another",
                     error ? "channel for the error" : "tolerance");

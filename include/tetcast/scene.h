@@ -14,6 +14,7 @@
 #include <tetcast/integrator.h>
 #include <tetcast/isosurface.h>
 #include <tetcast/shading.h>
+#include <tetcast/slice.h>
 #include <tetcast/transfer_function.h>
 #include <tetcast/volume.h>
 
@@ -74,6 +75,17 @@ TETCAST_API TetcastBlend tetcast_scene_blend(const TetcastScene *scene);
  * had. */
 TETCAST_API TetcastStatus tetcast_scene_set_isosurfaces(TetcastScene *scene, const TetcastIsosurface *isosurfaces,
                                                         int count);
+
+/* Sets the scene's slices in place of those it had; `slices` is copied, and may be NULL when `count` is 0. At most
+ * TETCAST_MAX_SLICES. With slices, or a boundary that is seen, what the scene needs and what is refused is as with
+ * isosurfaces, but the field may be one of cells, and the scene needs a transfer function, whose extinction may be 0.
+ * Where a ray meets a slice follows from the plane alone, as with clips: a slice in the plane of a clip closes it. Must
+ * not run while this scene renders. */
+TETCAST_API TetcastStatus tetcast_scene_set_slices(TetcastScene *scene, const TetcastSlice *slices, int count);
+
+/* Sets how the mesh's boundary is seen; NULL: not at all, as in a new scene. With TETCAST_TRAVERSAL_FACES, which knows
+ * no boundary, it is TETCAST_ERROR_ARGUMENT. Must not run while this scene renders. */
+TETCAST_API TetcastStatus tetcast_scene_set_boundary(TetcastScene *scene, const TetcastBoundary *boundary);
 
 /* Sets the light; `desc` may be NULL: as a new scene has it, the default. Must not run while this scene renders. On
  * error the scene keeps what it had. */

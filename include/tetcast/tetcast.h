@@ -16,6 +16,7 @@
 #include <tetcast/mesh.h>
 #include <tetcast/scene.h>
 #include <tetcast/shading.h>
+#include <tetcast/slice.h>
 #include <tetcast/status.h>
 #include <tetcast/transfer_function.h>
 #include <tetcast/version.h>

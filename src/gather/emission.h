@@ -197,83 +197,140 @@ TC_INLINE void tc_emission_stretch(const unsigned on, const TcGatherJob *job, Tc
   e->block_transmittance -= weight;
 }
 
-/* The lanes of `mask` meet isosurfaces, at `fraction` of their ways through their cells. */
-TC_NOINLINE void tc_emission_surface(const TcGatherJob *job, TcEmission *e, TcMask mask, TcMask up,
-                                     const TcPassage *passage, const TcVec *fraction) {
-  TcVec color[3], opacity = tc_set(0);
+/* The lanes of `mask` meet surfaces. */
+TC_INLINE void tc_emission_surface(TcEmission *e, TcMask mask, const TcMeeting *meeting) {
+  const TcVec opacity = tc_select(mask, meeting->opacity, tc_set(0)), weight = e->block_transmittance * opacity;
   for (int k = 0; k < 3; ++k)
-    color[k] = tc_set(0);
-  for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
-    const int l = __builtin_ctz(lanes), rises = tc_bits(up) >> l & 1, i = e->layers.below[l] - !rises;
-    double rgb[3], at = (double)TC_AT(*fraction, l);
-    if (passage->partial)
-      at = (double)TC_AT(passage->from, l) + at * (double)(TC_AT(passage->to, l) - TC_AT(passage->from, l));
-    tc_surface_color(job, passage, l, i, rises, at, rgb);
-    for (int k = 0; k < 3; ++k)
-      TC_AT(color[k], l) = (TcReal)rgb[k];
-    TC_AT(opacity, l) = (TcReal)job->surfaces->surface[i].opacity;
-    tc_layers_set(job->surfaces, &e->layers, l, rises ? i + 1 : i);
-  }
-  const TcVec weight = e->block_transmittance * opacity;
-  for (int k = 0; k < 3; ++k)
-    e->block_color[k] = tc_madd(weight, color[k], e->block_color[k]);
+    e->block_color[k] = tc_madd(weight, tc_select(mask, meeting->color[k], tc_set(0)), e->block_color[k]);
   e->block_transmittance -= weight;
   e->layers.veil -= e->layers.veil * opacity;
 }
 
-/* Segments of which some meet isosurfaces: stretch after stretch. `crossed` are the lanes that went from face to face,
- * `mask` those of them for which a length of it counts. Which surfaces are met depends on the sides of faces alone, so
- * one that lies in a cell whose length is rounded to 0 is met all the same; where it is met follows from differences of
- * scalars, as with knots. */
-TC_NOINLINE void tc_emission_meet(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask, TcMask crossed,
-                                  const TcPassage *passage) {
+/* The lanes of `mask` are at the boundary, with the scalar s; those that enter are at the first face of the passage,
+ * others at the last. Where the scalar is NaN, nothing is seen. */
+TC_NOINLINE void tc_emission_boundary(const TcGatherJob *job, TcEmission *e, TcMask mask, const TcPassage *passage,
+                                      bool enter, const TcVec *s) {
+  if (!(job->surfaces->boundary.opacity > 0))
+    return;
+  TcMeeting meeting;
+  memset(&meeting, 0, sizeof meeting);
+  mask = tc_and(mask, tc_eq(*s, *s));
+  for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
+    const int l = __builtin_ctz(lanes);
+    uint32_t id[3];
+    for (int k = 0; k < 3; ++k)
+      id[k] = enter ? TC_AT(passage->entry->id[k], l) : TC_AT(passage->walk->v[k].id, l);
+    tc_meet_boundary(job, passage, l, id, (double)TC_AT(*s, l), &meeting);
+  }
+  tc_emission_surface(e, mask, &meeting);
+}
+
+/* The lanes of `mask` meet an isosurface or, those of `slices`, a slice, at `fraction` of what counts of their cells.
+ */
+TC_NOINLINE void tc_emission_within(const TcGatherJob *job, TcEmission *e, TcMask mask, TcMask slices, TcMask up,
+                                    const TcPassage *passage, const TcVec *fraction, const TcVec *s) {
+  TcMeeting meeting;
+  memset(&meeting, 0, sizeof meeting);
+  for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
+    const int l = __builtin_ctz(lanes), rises = tc_bits(up) >> l & 1, i = e->layers.below[l] - !rises;
+    if (tc_bits(slices) >> l & 1) {
+      tc_meet_slice(job, passage, &e->layers, l, (double)TC_AT(*s, l), &meeting);
+    } else {
+      tc_meet_isosurface(job, passage, l, i, rises, (double)TC_AT(*fraction, l), &meeting);
+      tc_layers_set(job->surfaces, &e->layers, l, rises ? i + 1 : i);
+    }
+  }
+  tc_emission_surface(e, mask, &meeting);
+  if (tc_any(slices))
+    tc_layers_next_slice(job->surfaces, passage->walk, slices, true, e->layers.slice, &e->layers);
+}
+
+/* Segments of which some meet surfaces: stretch after stretch. `mask` are the lanes for which a length of what they
+ * crossed counts. Which isosurfaces are met depends on the sides of faces alone, so one that lies in a cell whose
+ * length is rounded to 0 is met all the same; where it is met follows from differences of scalars, as with knots. A
+ * slice is met at its depth, which is in one of the half-open intervals that make up a ray. */
+TC_NOINLINE void tc_emission_meet(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask,
+                                  const TcVec *scalar0, const TcVec *scalar1, const TcPassage *passage) {
   TcLayers *layers = &e->layers;
-  const TcVec zero = tc_set(0), s0 = passage->s0, s1 = passage->s1, ratio = 1 / tc_abs(s1 - s0);
+  const TcPacket *walk = passage->walk;
+  const TcVec zero = tc_set(0), one = tc_set(1), s0 = *scalar0, s1 = *scalar1, ratio = 1 / tc_abs(s1 - s0);
   const TcVec low = tc_min(s0, s1), high = tc_max(s0, s1);
   const TcVec length = tc_select(mask, passage->length, zero), spread = on & TC_BOUND ? passage->spread : zero;
-  const TcMask valid = tc_and(crossed, tc_and(tc_eq(s0, s0), tc_eq(s1, s1)));
-  const TcMask before = tc_lt(passage->walk->at.z, passage->walk->rays.begin);
-  tc_layers_forget(layers, tc_and(crossed, tc_or(before, tc_and_not(tc_all(), valid))));
-  const TcMask here = tc_and_not(valid, before);
-  tc_layers_locate(job->surfaces, layers, tc_and(here, tc_layers_unknown(on, layers, s0)), s0);
-  TcVec from = s0;
-  for (TcMask left = here;;) {
+  const TcMask valid = tc_and(passage->crossed, tc_and(tc_eq(s0, s0), tc_eq(s1, s1))), flat = tc_eq(s0, s1);
+  const TcMask before = tc_lt(walk->at.z, walk->rays.begin);
+  tc_layers_forget(layers, tc_and(passage->crossed, tc_or(before, tc_and_not(tc_all(), valid))));
+  const TcMask here = tc_and_not(valid, before), unknown = tc_and(here, tc_layers_unknown(on, layers, s0));
+  tc_layers_locate(job->surfaces, layers, unknown, s0);
+  tc_layers_next_slice(job->surfaces, walk, unknown, false, passage->begin, layers);
+  const TcMask entering = tc_and(here, layers->entering);
+  tc_emission_boundary(job, e, tc_and(entering, tc_le(walk->rays.begin, passage->entry->z)), passage, true, &s0);
+  layers->entering = tc_and_not(layers->entering, passage->crossed);
+  const TcMask to_the_end = tc_eq(passage->end, walk->rays.end);
+  TcVec from = s0, done = zero;
+  TcMask left = here, even = flat; /* those whose stretches are told by their lengths, not by the scalar */
+  for (;;) {
     const TcMask up = tc_and(left, tc_le(layers->high, s1)), down = tc_and(left, tc_lt(s1, layers->low)),
                  crossing = tc_or(up, down);
     const TcVec value = tc_select(up, layers->high, tc_select(down, layers->low, s1));
-    const TcVec to = tc_max(low, tc_min(high, value)); /* where a cell was left out, behind the surface already */
-    const TcVec share = tc_select(tc_eq(s0, s1), tc_select(crossing, zero, tc_set(1)), tc_abs(to - from) * ratio);
+    /* Where a cell was left out, the scalar may be behind the surface already. */
+    TcVec to = tc_max(low, tc_min(high, value));
+    TcVec at = tc_select(crossing, tc_select(flat, done, tc_abs(to - s0) * ratio), one);
+    const TcMask sliced =
+        tc_and(tc_le(passage->begin, layers->slice),
+               tc_or(tc_lt(layers->slice, passage->end), tc_and(to_the_end, tc_le(layers->slice, passage->end))));
+    const TcVec slice_at = tc_max(done, (layers->slice - passage->begin) / passage->length);
+    const TcMask first =
+        tc_and(tc_and(tc_and(left, mask), sliced), tc_or(tc_lt(slice_at, at), tc_and_not(sliced, crossing)));
+    to = tc_select(first, tc_max(low, tc_min(high, tc_madd(slice_at, s1 - s0, s0))), to);
+    at = tc_select(first, tc_min(slice_at, one), at);
+    even = tc_or(even, first);
+    const TcVec share = tc_select(even, at - done, tc_abs(to - from) * ratio);
     tc_emission_stretch(on, job, e, tc_and(mask, left), length * share, from, to, spread * share);
-    if (!tc_any(crossing))
-      return;
-    const TcVec fraction = tc_select(tc_eq(s0, s1), zero, tc_abs(to - s0) * ratio);
-    tc_emission_surface(job, e, crossing, up, passage, &fraction);
-    from = tc_select(crossing, to, from);
-    left = crossing;
+    const TcMask met = tc_or(crossing, first);
+    if (!tc_any(met))
+      break;
+    tc_emission_within(job, e, met, first, up, passage, &at, &to);
+    from = tc_select(met, to, from);
+    done = tc_select(met, at, done);
+    left = met;
   }
+  const TcMask out = tc_and(tc_and(here, tc_mask_of(passage->leaving)), tc_le(walk->at.z, walk->rays.end));
+  if (tc_any(out))
+    tc_emission_boundary(job, e, out, passage, false, &s1);
+}
+
+/* Lanes that have more to do with surfaces in this segment than to look whether there are any. */
+TC_INLINE TcMask tc_emission_meets(const unsigned on, const TcGatherJob *job, const TcEmission *e, TcMask mask,
+                                   TcVec s0, TcVec s1, const TcPassage *passage) {
+  const TcLayers *layers = &e->layers;
+  TcMask meets = tc_and_not(passage->crossed, tc_and(tc_le(layers->low, s1), tc_lt(s1, layers->high)));
+  meets = tc_or(meets, tc_and(mask, tc_le(layers->slice, passage->end)));
+  if (on & TC_CORNERS)
+    meets = tc_or(meets, tc_and(passage->crossed, tc_layers_unknown(on, layers, s0)));
+  if (TC_UNLIKELY(passage->leaving && job->surfaces->boundary.opacity > 0))
+    meets = tc_or(meets, tc_and(passage->crossed, tc_mask_of(passage->leaving)));
+  return meets;
 }
 
 TC_INLINE void tc_emission_segment(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask,
                                    const TcPassage *passage) {
   TcVec s0 = passage->s0, s1 = passage->s1;
   if (on & TC_CELLS)
-    s0 = s1 = tc_cell_values(job, mask, passage->cell);
-  if (on & TC_SURFACES) {
-    TcMask met = tc_and_not(passage->crossed, tc_and(tc_le(e->layers.low, s1), tc_lt(s1, e->layers.high)));
-    if (on & TC_CORNERS)
-      met = tc_or(met, tc_and(passage->crossed, tc_layers_unknown(on, &e->layers, s0)));
-    if (TC_UNLIKELY(tc_any(met))) {
-      tc_emission_meet(on, job, e, mask, passage->crossed, passage);
-      return;
-    }
+    s0 = s1 = tc_cell_values(job, on & TC_SURFACES ? passage->crossed : mask, passage->cell);
+  if (on & TC_SURFACES && TC_UNLIKELY(tc_any(tc_emission_meets(on, job, e, mask, s0, s1, passage)))) {
+    const TcVec scalar0 = s0, scalar1 = s1;
+    tc_emission_meet(on, job, e, mask, &scalar0, &scalar1, passage);
+    return;
   }
   tc_emission_stretch(on, job, e, mask, passage->length, s0, s1, on & TC_BOUND ? passage->spread : tc_set(0));
 }
 
 TC_INLINE void tc_emission_enter(const TcGatherJob *job, TcEmission *e, TcMask mask, const TcPacket *walk) {
   (void)walk;
-  if (job->surfaces)
+  if (job->surfaces) {
     tc_layers_forget(&e->layers, mask);
+    e->layers.entering = tc_or(e->layers.entering, mask);
+  }
 }
 
 /* Lanes that are complete: beyond the tolerance's depth, or so deep that what is left changes no channel by half a unit

@@ -18,7 +18,6 @@
 #include "base/lanes.h"
 #include "optics/tolerance.h"
 #include "volume/coefficients.h"
-#include "volume/surfaces.h"
 #include "walk/packet.h"
 
 /* What gatherers are given; each uses some of it. */
@@ -46,6 +45,8 @@ typedef struct TcPassage {
   const uint32_t *cell;   /* [TC_LANES] */
   const TcCrossed *entry; /* with TC_SURFACES: the face where they entered */
   const TcPacket *walk;   /* at the face where they left */
+  TcVec begin, end;       /* the depths between which the length lies */
+  unsigned leaving;       /* lanes that are at the shell, where a path ends */
   TcMask crossed;         /* lanes that are at another face, though none of it may count */
   bool partial;           /* of some lanes only a part counts, from `from` to `to`, fractions of the whole */
   TcVec from, to;

@@ -10,13 +10,17 @@
  * counts doesn't know yet: its `low` is ∞. */
 typedef struct TcLayers {
   TcVec low, high;
-  TcVec veil; /* what the surfaces so far let through */
+  TcVec slice;     /* the depth of the next slice */
+  TcVec veil;      /* what the surfaces so far let through */
+  TcMask entering; /* lanes that set out from the shell */
   int below[TC_LANES];
 } TcLayers;
 
 TC_INLINE void tc_layers_begin(TcLayers *layers) {
   layers->low = layers->high = tc_set((TcReal)INFINITY);
+  layers->slice = layers->low;
   layers->veil = tc_set(1);
+  layers->entering = tc_none();
 }
 
 TC_INLINE void tc_layers_forget(TcLayers *layers, TcMask mask) {
@@ -52,6 +56,17 @@ TC_INLINE void tc_layers_locate(const TcSurfaces *surfaces, TcLayers *layers, Tc
     }
     tc_layers_set(surfaces, layers, l, below);
   }
+}
+
+/* The lanes of `mask` find the next slice that is not before `depth`, or lies behind it. */
+TC_NOINLINE void tc_layers_next_slice(const TcSurfaces *surfaces, const TcPacket *walk, TcMask mask, bool behind,
+                                      TcVec depth, TcLayers *layers) {
+  TcVec next = tc_set((TcReal)INFINITY);
+  for (int i = 0; i < surfaces->slice_count; ++i) {
+    const TcMask ahead = behind ? tc_lt(depth, walk->slice[i]) : tc_le(depth, walk->slice[i]);
+    next = tc_select(ahead, tc_min(next, walk->slice[i]), next);
+  }
+  layers->slice = tc_select(mask, next, layers->slice);
 }
 
 /* The gradient at `fraction` of the way that lane l went through a cell. */
@@ -91,19 +106,71 @@ static void tc_surface_gradient(const TcGatherJob *job, const TcPassage *passage
   tc_cell_gradient(position, value, gradient, &six_volumes);
 }
 
-/* The colour of isosurface `i` as lane l sees it there, from below if the scalar rises along the ray. */
-static void tc_surface_color(const TcGatherJob *job, const TcPassage *passage, int l, int i, bool rises,
-                             double fraction, double color[3]) {
-  memcpy(color, job->surfaces->surface[i].color, 3 * sizeof *color);
-  if (!job->surfaces->lighting)
-    return;
-  double gradient[3], along[3];
+/* What lanes meet. */
+typedef struct TcMeeting {
+  TcVec color[3], opacity;
+} TcMeeting;
+
+TC_INLINE void tc_meet(TcMeeting *meeting, int l, const double color[3], double opacity) {
   for (int k = 0; k < 3; ++k)
-    along[k] = TC_AT(passage->walk->along[k], l);
-  tc_surface_gradient(job, passage, l, fraction, gradient);
-  for (int k = 0; rises && k < 3; ++k)
-    gradient[k] = -gradient[k];
-  tc_light_surface(job->surfaces->lighting, along, gradient, color);
+    TC_AT(meeting->color[k], l) = (TcReal)color[k];
+  TC_AT(meeting->opacity, l) = (TcReal)opacity;
+}
+
+/* Light on a surface with this normal, of any length; `away` if it points away from the eye. */
+static void tc_meet_light(const TcGatherJob *job, const TcPacket *walk, int l, double normal[3], bool away,
+                          double color[3]) {
+  double along[3];
+  for (int k = 0; k < 3; ++k) {
+    along[k] = TC_AT(walk->along[k], l);
+    normal[k] = away ? -normal[k] : normal[k];
+  }
+  tc_light_surface(job->surfaces->lighting, along, normal, color);
+}
+
+/* Lane l meets isosurface `i`, from below if the scalar rises along the ray. */
+static void tc_meet_isosurface(const TcGatherJob *job, const TcPassage *passage, int l, int i, bool rises,
+                               double fraction, TcMeeting *meeting) {
+  const TetcastIsosurface *surface = &job->surfaces->surface[i];
+  double color[3] = {surface->color[0], surface->color[1], surface->color[2]}, gradient[3];
+  if (passage->partial)
+    fraction = (double)TC_AT(passage->from, l) + fraction * (double)(TC_AT(passage->to, l) - TC_AT(passage->from, l));
+  if (job->surfaces->lighting) {
+    tc_surface_gradient(job, passage, l, fraction, gradient);
+    tc_meet_light(job, passage->walk, l, gradient, rises, color);
+  }
+  tc_meet(meeting, l, color, surface->opacity);
+}
+
+/* Lane l meets a slice where the scalar is s. Of several at one depth one is seen. */
+static void tc_meet_slice(const TcGatherJob *job, const TcPassage *passage, const TcLayers *layers, int l, double s,
+                          TcMeeting *meeting) {
+  int i = 0;
+  while (i < job->surfaces->slice_count - 1 && TC_AT(passage->walk->slice[i], l) != TC_AT(layers->slice, l))
+    ++i;
+  const TcOptics optics = tc_pieces_at(job->pieces, s);
+  tc_meet(meeting, l, optics.color, job->surfaces->slice_opacity[i]);
+}
+
+/* Lane l meets the boundary, a face of these vertices where the scalar is s. */
+static void tc_meet_boundary(const TcGatherJob *job, const TcPassage *passage, int l, const uint32_t id[3], double s,
+                             TcMeeting *meeting) {
+  const TetcastBoundary *boundary = &job->surfaces->boundary;
+  double color[3], position[3][3], edge[2][3], normal[3];
+  const TcOptics optics = tc_pieces_at(job->pieces, s);
+  memcpy(color, boundary->colored ? boundary->color : optics.color, sizeof color);
+  if (job->surfaces->lighting) {
+    for (int k = 0; k < 3; ++k)
+      tc_volume_vertex(job->values->volume, id[k], position[k]);
+    for (int k = 0; k < 3; ++k)
+      edge[0][k] = position[1][k] - position[0][k], edge[1][k] = position[2][k] - position[0][k];
+    tc_cross(edge[0], edge[1], normal);
+    double toward = 0;
+    for (int k = 0; k < 3; ++k)
+      toward -= normal[k] * TC_AT(passage->walk->along[k], l);
+    tc_meet_light(job, passage->walk, l, normal, toward < 0, color);
+  }
+  tc_meet(meeting, l, color, boundary->opacity);
 }
 
 #endif

@@ -29,7 +29,7 @@ static double value_at(const double normal[3], const double center[3], double of
 }
 
 /* The largest component is scaled to [1/2, 1): nothing overflows, and no bit is lost but far below what counts. */
-static TcHalfSpace scaled(const TetcastVolume *volume, const TetcastHalfSpace *source) {
+TcHalfSpace tc_half_space_scale(const TetcastVolume *volume, const TetcastHalfSpace *source) {
   int exponent;
   frexp(fmax(fabs(source->normal[0]), fmax(fabs(source->normal[1]), fabs(source->normal[2]))), &exponent);
   TcHalfSpace result;
@@ -49,7 +49,7 @@ TetcastStatus tc_clip_create(const TetcastVolume *volume, const TetcastHalfSpace
   if (!tc_allocate_array(volume->context, (void **)clip, count, sizeof **clip, "half-spaces of a clip"))
     return TETCAST_ERROR_MEMORY;
   for (int i = 0; i < count; ++i) {
-    const TcHalfSpace half_space = scaled(volume, &half_spaces[i]);
+    const TcHalfSpace half_space = tc_half_space_scale(volume, &half_spaces[i]);
     if (!(half_space.at_center > (1 + 0x1p-40) * half_space.length * volume->radius))
       (*clip)[(*kept)++] = half_space;
   }

@@ -8,6 +8,9 @@
 #include "volume/volume.h"
 #include "walk/clip.h"
 
+/* A plane or half-space in the volume's units. */
+TcHalfSpace tc_half_space_scale(const TetcastVolume *volume, const TetcastHalfSpace *source);
+
 /* *clip: [*kept] of them, NULL if there are none. Those that hold the whole volume are left out: they change nothing.
  */
 TetcastStatus tc_clip_create(const TetcastVolume *volume, const TetcastHalfSpace *half_spaces, int count,

@@ -54,7 +54,7 @@ TC_INLINE TcVec spread_of(const unsigned on, const TcGround *ground, const TcPac
  * the next one for what it has beyond. So lengths along a path add up to its last depth minus its first, whatever
  * happens in between. Returns the lanes whose rays end here. */
 TC_INLINE TcMask add_segment(const int which, const unsigned on, const TcGround *ground, const TcGatherJob *job,
-                             Packet *packet, TcCrossed *crossed, TcWorker *worker) {
+                             Packet *packet, TcCrossed *crossed, unsigned leaving, TcWorker *worker) {
   TcPacket *p = &packet->walk;
   const TcVec from = p->seen;
   TcVec z1 = p->at.z;
@@ -84,6 +84,9 @@ TC_INLINE TcMask add_segment(const int which, const unsigned on, const TcGround 
   worker->segments += __builtin_popcount(tc_bits(moved));
   p->seen = tc_select(moved, z1, from);
   passage.length = z1 - from;
+  passage.begin = from;
+  passage.end = z1;
+  passage.leaving = leaving;
   if (on & TC_BOUND)
     passage.spread = spread_of(on, ground, p, crossed, passage.length);
   if (on & TC_BOUND && on & TC_ASSOCIATIONS && (!(on & TC_WEIGHTS) || job->coefficients->cells))
@@ -127,7 +130,7 @@ TC_INLINE void advance(const int which, const unsigned on, const TcGround *given
     EACH_PACKET {
       TcPacket *p = &packet[i].walk;
       crossed[i].mask = tc_and_not(active[i], lost[i]);
-      const TcMask ends = add_segment(which, on, &ground, job, &packet[i], &crossed[i], worker);
+      const TcMask ends = add_segment(which, on, &ground, job, &packet[i], &crossed[i], ended[i], worker);
       const TcMask complete = tc_gather_complete(which, on, job, &packet[i].gather, active[i], ++p->steps);
       const unsigned stop = tc_bits(tc_or(tc_or(lost[i], complete), ends));
       if (TC_UNLIKELY(stop | ended[i])) {
@@ -177,7 +180,7 @@ TC_INLINE void advance_cells(const int which, const unsigned on, const TcGround 
     crossed.s1 = on & TC_CORNERS ? tc_cell_corner_value(ground, cell, p) : p->at.s;
     if (on & TC_CORNERS)
       crossed.range = tc_cell_range(ground, cell);
-    const TcMask ends = add_segment(which, on, ground, job, packet, &crossed, worker);
+    const TcMask ends = add_segment(which, on, ground, job, packet, &crossed, 0, worker);
     const TcMask complete = tc_gather_complete(which, on, job, &packet->gather, 1, ++p->steps);
     if (complete) {
       p->stopped = 1;
@@ -253,14 +256,17 @@ typedef struct Source {
 #define DESTINATION(pixel, sample) ((int64_t)(sample) << 32 | (pixel))
 #define PIXEL_OF(destination)      ((destination)&UINT32_MAX)
 
-static void begin_packet(const int which, bool directed, const TcGatherJob *job, TcWaiting *waiting, Packet *packet) {
+static void begin_packet(const int which, const TcSurfaces *surfaces, const TcGatherJob *job, TcWaiting *waiting,
+                         Packet *packet) {
   TcPacket *p = &packet->walk;
   TcHits *hits = waiting->hits;
   waiting->hits = p->hits;
   p->hits = hits;
   p->rays = waiting->rays;
-  if (directed)
+  if (surfaces) {
     memcpy(p->along, waiting->along, sizeof p->along);
+    memcpy(p->slice, waiting->slice, (size_t)surfaces->slice_count * sizeof *p->slice);
+  }
   p->lanes = waiting->lanes;
   memcpy(p->destination, waiting->destination, sizeof p->destination);
   p->active = tc_none();
@@ -316,7 +322,7 @@ static bool next_packet(const int which, State *state, const Source *source, Pac
       return false;
   }
   if (queue->next < queue->count)
-    begin_packet(which, state->ground.directed, &state->job, &queue->waiting[queue->next++], packet);
+    begin_packet(which, state->ground.surfaces, &state->job, &queue->waiting[queue->next++], packet);
   return true;
 }
 
@@ -334,7 +340,7 @@ static State *prepare(const TcJob *job, TcWorker *worker) {
                              .values = job->values,
                              .screen = job->screen,
                              .resolution = job->resolution,
-                             .directed = job->surfaces != NULL};
+                             .surfaces = job->surfaces};
   state->job = (TcGatherJob){.sums = job->sums,
                              .pieces = job->pieces,
                              .values = job->values,
@@ -402,6 +408,8 @@ static void place_rays(const TcJob *job, const TcGround *ground, const TcWide *s
   const double radius = ground->shell->volume->radius;
   if (job->clip_count > 0)
     tc_clip(job->clip, job->clip_count, radius, job->interval_error, placed);
+  if (job->surfaces)
+    tc_slice(job->surfaces, placed);
   if (stop)
     tc_stop(stop, radius, job->interval_error, placed);
   left_out &= ~placed->lanes;

@@ -7,12 +7,12 @@
 
 #include "optics/tolerance.h"
 #include "volume/coefficients.h"
-#include "volume/surfaces.h"
 #include "walk/clip.h"
 #include "walk/features.h"
 #include "walk/hits.h"
 #include "walk/ray.h"
 #include "walk/screen.h"
+#include "walk/surfaces.h"
 
 enum {
   TC_TILE = 16,     /* pixels a side, at most, of what a kernel renders at once */
@@ -43,7 +43,7 @@ typedef struct TcJob {
   int sums;                /* numbers that are gathered for a ray */
   const struct TcSampler *sampler;
   const TcCoefficients *coefficients;
-  const TcSurfaces *surfaces;         /* isosurfaces; NULL: none */
+  const TcSurfaces *surfaces;         /* NULL: none */
   TetcastBlend blend;                 /* other than composite: of values, with neither pieces nor coefficients */
   bool to_the_end;                    /* of coefficients: all is wanted, though all groups be opaque */
   const struct TcIsaKernels *precise; /* single precision: those in which rays are walked again, */

@@ -375,7 +375,7 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
       tc_view_create(context, camera, scene->volume, (double)frame->width / (double)frame->height, &job->view);
   if (!status && !scene->coefficients && !scene->blend)
     status = tc_scene_prepare(scene);
-  if (!status && scene->isosurface_count > 0) {
+  if (!status && !scene->coefficients && !scene->blend && tc_scene_has_surfaces(scene)) {
     status = tc_scene_surfaces(scene, &render.surfaces);
     job->surfaces = &render.surfaces;
   }

@@ -55,6 +55,9 @@ struct TetcastScene {
   TetcastBlend blend;
   TetcastIsosurface *isosurfaces; /* [isosurface_count], values ascending, in the field's unit */
   int isosurface_count;
+  TetcastSlice slices[TETCAST_MAX_SLICES];
+  int slice_count;
+  TetcastBoundary boundary; /* opacity 0: it is not seen */
   TcLighting lighting;
   TcHalfSpace *clip; /* [clip_count]; NULL: none */
   int clip_count;
@@ -79,10 +82,12 @@ TetcastStatus tc_scene_set_field(TetcastScene *scene, const TetcastField *field)
 void tc_scene_share_field(TetcastScene *scene, const TetcastScene *other);
 TetcastStatus tc_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer);
 TetcastStatus tc_scene_set_isosurfaces(TetcastScene *scene, const TetcastIsosurface *isosurfaces, int count);
+/* Whether there are surfaces of any kind. */
+bool tc_scene_has_surfaces(const TetcastScene *scene);
 TcLighting tc_lighting_of(const TetcastShadingDesc *desc);
 /* The scene's isosurfaces as its field is stored. */
 TetcastStatus tc_scene_scale_isosurfaces(const TetcastScene *scene, TetcastIsosurface **scaled);
-/* What kernels are to know of them, once the scene is prepared. */
+/* What kernels are to know of surfaces, once the scene is prepared. */
 TetcastStatus tc_scene_surfaces(const TetcastScene *scene, TcSurfaces *surfaces);
 /* What follows from field, transfer function and isosurfaces is to be made anew. */
 void tc_scene_forget(TetcastScene *scene);

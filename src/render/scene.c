@@ -64,7 +64,9 @@ TetcastStatus tc_scene_prepare(const TetcastScene *scene) {
     status = scale_transfer(scene, &prepared->scaled);
     if (!status)
       status = tc_scene_scale_isosurfaces(scene, &prepared->isosurfaces);
-    if (!status)
+    if (!status && (scene->slice_count > 0 || scene->boundary.opacity > 0))
+      prepared->shell = scene->volume->shell; /* a slice may be anywhere, and the boundary is all of it */
+    else if (!status)
       status = tc_shell_build(scene->values, &prepared->scaled->pieces, prepared->isosurfaces, scene->isosurface_count,
                               &prepared->shell);
     prepared->ready = !status;

@@ -64,19 +64,46 @@ TetcastStatus tc_scene_scale_isosurfaces(const TetcastScene *scene, TetcastIsosu
   return TETCAST_OK;
 }
 
+bool tc_scene_has_surfaces(const TetcastScene *scene) {
+  return scene->isosurface_count > 0 || scene->slice_count > 0 || scene->boundary.opacity > 0;
+}
+
+/* What no component of a surface's colour exceeds, with light on it or without. */
+static void take_largest(const TcLighting *lighting, const double color[3], TcSurfaces *surfaces) {
+  for (int k = 0; k < 3; ++k) {
+    const double seen = lighting ? tc_light_largest(lighting, color[k]) : color[k];
+    surfaces->largest[k] = fmax(surfaces->largest[k], seen);
+  }
+}
+
 TetcastStatus tc_scene_surfaces(const TetcastScene *scene, TcSurfaces *surfaces) {
   const TcLighting *lighting = &scene->lighting;
   TcPrepared *prepared = scene->prepared;
-  *surfaces = (TcSurfaces){.count = scene->isosurface_count, .surface = prepared->isosurfaces};
-  for (int i = 0; i < surfaces->count; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      const double color = prepared->isosurfaces[i].color[k];
-      surfaces->largest[k] = fmax(surfaces->largest[k], lighting->surfaces ? tc_light_largest(lighting, color) : color);
-    }
+  *surfaces = (TcSurfaces){.count = scene->isosurface_count,
+                           .surface = prepared->isosurfaces,
+                           .lighting = lighting->surfaces ? lighting : NULL,
+                           .slice_count = scene->slice_count,
+                           .boundary = scene->boundary};
+  for (int i = 0; i < surfaces->count; ++i)
+    take_largest(surfaces->lighting, prepared->isosurfaces[i].color, surfaces);
+  for (int i = 0; i < surfaces->slice_count; ++i) {
+    const TetcastSlice *slice = &scene->slices[i];
+    const TetcastHalfSpace plane = {.normal = {slice->normal[0], slice->normal[1], slice->normal[2]},
+                                    .offset = slice->offset};
+    surfaces->slice[i] = tc_half_space_scale(scene->volume, &plane);
+    surfaces->slice_opacity[i] = slice->opacity;
   }
-  if (!lighting->surfaces)
+  for (int k = 0; k < 3; ++k)
+    surfaces->boundary.color[k] = fmin(surfaces->boundary.color[k], TC_LARGEST_COLOR);
+  take_largest(surfaces->lighting, surfaces->boundary.color, surfaces);
+  for (int64_t i = 0; scene->transfer && i < scene->transfer->color_count; ++i) { /* of slices and of the boundary */
+    double color[3];
+    for (int k = 0; k < 3; ++k)
+      color[k] = fmin(scene->transfer->color[4 * i + 1 + k], TC_LARGEST_COLOR);
+    take_largest(surfaces->lighting, color, surfaces);
+  }
+  if (surfaces->count == 0 || !surfaces->lighting)
     return TETCAST_OK;
-  surfaces->lighting = lighting;
   if (!lighting->smooth || scene->values->association != TETCAST_POINT)
     return TETCAST_OK;
   TetcastStatus status = TETCAST_OK;

@@ -52,6 +52,18 @@ static bool tc_clip_lane(const TcHalfSpace *half_space, double radius, double mo
   return true;
 }
 
+/* Where rays meet slices: as where they would be clipped, to the bit. */
+static void tc_slice(const TcSurfaces *surfaces, TcPlaced *placed) {
+  for (int i = 0; i < surfaces->slice_count; ++i) {
+    TcWide value = tc_set_wide(surfaces->slice[i].at_center), slope = tc_set_wide(0);
+    for (int k = 0; k < 3; ++k) {
+      value += surfaces->slice[i].normal[k] * placed->from_center[k];
+      slope += surfaces->slice[i].normal[k] * placed->lines.direction[k];
+    }
+    placed->slice[i] = -value / slope;
+  }
+}
+
 /* Clips the rays, and leaves out those of which nothing counts. */
 static void tc_clip(const TcHalfSpace *half_spaces, int count, double radius, double most, TcPlaced *placed) {
   for (unsigned lanes = placed->lanes; lanes; lanes &= lanes - 1) {

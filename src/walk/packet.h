@@ -15,7 +15,9 @@
 
 typedef struct TcPacket {
   TcRays rays;
-  TcWide along[3]; /* if the ground is directed: the rays' directions, unit vectors */
+  /* If there are surfaces: the rays' directions, unit vectors; the depths at which they meet slices. */
+  TcWide along[3];
+  TcVec slice[TETCAST_MAX_SLICES];
   /* The face where each ray is: its vertices, counter-clockwise around the ray, each with the cross product of the two
    * others, > 0. */
   TcLanePoints v[3];

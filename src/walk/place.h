@@ -15,11 +15,13 @@ typedef struct TcLines {
 /* Rays set up, those of `lanes` that may meet the volume. */
 typedef struct TcPlaced {
   TcLines lines;
-  TcWide from_center[3];     /* of the points where they are nearest to the volume's centre */
-  TcWide near;               /* these points' depths: distances from eye + offset */
-  TcWide begin, end;         /* the interval that counts, as depths from these points */
-  TcWide doubt;              /* how far off its ends may be, in all (interval.h) */
-  TcWide origin[3], rest[3]; /* in ray space: the same points, as the sum of two numbers */
+  TcWide from_center[3];            /* of the points where they are nearest to the volume's centre */
+  TcWide near;                      /* these points' depths: distances from eye + offset */
+  TcWide begin, end;                /* the interval that counts, as depths from these points */
+  TcWide slice[TETCAST_MAX_SLICES]; /* depths from these points at which rays meet slices; NaN, infinite: nowhere */
+  TcWide shift;                     /* depth of these points, as packets count it */
+  TcWide doubt;                     /* how far off its ends may be, in all (interval.h) */
+  TcWide origin[3], rest[3];        /* in ray space: the same points, as the sum of two numbers */
   int64_t destination[TC_LANES];
   unsigned lanes;
 } TcPlaced;
@@ -84,7 +86,7 @@ static void tc_place(const TcGround *ground, TcPlaced *placed) {
 }
 
 /* Rays on the screen. */
-static void tc_take_screen(const TcScreen *screen, const TcPlaced *placed, TcRays *rays) {
+static void tc_take_screen(const TcScreen *screen, TcPlaced *placed, TcRays *rays) {
   const TcLines *lines = &placed->lines;
   TcWide shift = tc_set_wide(0), along = shift; /* depth of the points that were placed, from the centre's plane */
   for (int k = 0; k < 3; ++k) {
@@ -96,6 +98,7 @@ static void tc_take_screen(const TcScreen *screen, const TcPlaced *placed, TcRay
     rays->scale = tc_real_of_wide(-screen->distance / along);
     shift /= along;
   }
+  placed->shift = shift;
   rays->begin = tc_real_of_wide(placed->begin + shift);
   rays->end = tc_real_of_wide(placed->end + shift);
 #if TC_SINGLE
@@ -109,7 +112,7 @@ static void tc_take_screen(const TcScreen *screen, const TcPlaced *placed, TcRay
 
 #if !TC_SINGLE
 /* Rays in ray space, all of them along kz. */
-TC_NOINLINE void tc_take_ray_space(const TcPlaced *placed, int kz, TcRays *rays) {
+TC_NOINLINE void tc_take_ray_space(TcPlaced *placed, int kz, TcRays *rays) {
   const TcWide *direction = placed->lines.direction, *origin = placed->origin, *rest = placed->rest;
   const int kx = (kz + 1) % 3, ky = (kz + 2) % 3;
   const TcVec tiny = tc_set(TC_TINY), zero = tc_set(0), dz = direction[kz];
@@ -125,6 +128,7 @@ TC_NOINLINE void tc_take_ray_space(const TcPlaced *placed, int kz, TcRays *rays)
   rays->rest_x = TC_NOT_TINY(rest[kx] - rays->shear_x * rest[kz]);
   rays->rest_y = TC_NOT_TINY(rest[ky] - rays->shear_y * rest[kz]);
   rays->rest_z = rest[kz] * rays->inverse_z;
+  placed->shift = zero;
   rays->begin = placed->begin;
   rays->end = placed->end;
 #undef TC_NOT_TINY

@@ -16,14 +16,15 @@
 #include "walk/features.h"
 #include "walk/ray.h"
 #include "walk/screen.h"
+#include "walk/surfaces.h"
 
 /* What rays are walked through. */
 typedef struct TcGround {
   const TcShell *shell;
-  const TcRows *values;    /* a scalar that is interpolated, or constant in cells; NULL: none */
-  const TcScreen *screen;  /* NULL: in ray space */
-  TcResolution resolution; /* with TC_BOUND */
-  bool directed;           /* packets are to know the rays' directions */
+  const TcRows *values;       /* a scalar that is interpolated, or constant in cells; NULL: none */
+  const TcScreen *screen;     /* NULL: in ray space */
+  TcResolution resolution;    /* with TC_BOUND */
+  const TcSurfaces *surfaces; /* NULL: there are none, and packets need not know their rays' directions */
 } TcGround;
 
 /* The rays of a packet. */

@@ -15,6 +15,7 @@ enum {
 typedef struct TcWaiting {
   TcRays rays;
   TcWide along[3]; /* as TcPacket has them */
+  TcVec slice[TETCAST_MAX_SLICES];
   unsigned lanes;
   unsigned doubtful; /* single precision: lanes whose rays pass an edge of the shell as near as rounding may move it */
   TcHits *hits;
@@ -33,8 +34,11 @@ static void tc_enqueue(TcPlaced *placed, TcQueue *queue) {
   const int first = queue->count * TC_LANES;
   TcWaiting *waiting = &queue->waiting[queue->count++];
   waiting->lanes = tc_take(queue->ground, placed, &waiting->rays);
-  if (queue->ground->directed)
+  if (queue->ground->surfaces) {
     memcpy(waiting->along, placed->lines.direction, sizeof waiting->along);
+    for (int i = 0; i < queue->ground->surfaces->slice_count; ++i)
+      waiting->slice[i] = tc_real_of_wide(placed->slice[i] + placed->shift);
+  }
   memcpy(waiting->destination, placed->destination, sizeof waiting->destination);
   for (int k = 0; k < 3; ++k) {
     memcpy(&queue->from_center[k][first], &placed->from_center[k], sizeof placed->from_center[k]);

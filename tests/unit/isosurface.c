@@ -225,6 +225,10 @@ typedef struct Reference {
   const TetcastIsosurface *surfaces;
   int count;
   double low, high, fog[3];
+  const TetcastSlice *slices;
+  int slice_count;
+  const TetcastBoundary *boundary; /* NULL: not seen */
+  double colors[2][3];             /* of slices and of the boundary: at 0 and at 1, linear between them */
   const TetcastShadingDesc *shading;
   Real (*gradients)[3]; /* [vertices] */
 } Reference;
@@ -288,6 +292,39 @@ static void gradient_at(const Reference *r, int64_t cell, const Linear *linear, 
   }
 }
 
+static void color_at(const Reference *r, Real value, Real color[3]) {
+  for (int k = 0; k < 3; ++k)
+    color[k] = r->colors[0][k] + (r->colors[1][k] - r->colors[0][k]) * value;
+}
+
+/* The cube's faces where the ray enters and leaves it, with the linear field `slanted`. */
+static int add_boundary(const Reference *r, const double eye[3], const double direction[3], Event *events, int count) {
+  for (int end = 0; end < 2; ++end) {
+    Real at = end ? INFINITY : 0, normal[3] = {0, 0, 0};
+    int side = -1;
+    for (int k = 0; k < 3; ++k) {
+      const Real a = (0 - (Real)eye[k]) / direction[k], b = (1 - (Real)eye[k]) / direction[k];
+      const Real t = end ? fmaxl(a, b) : fminl(a, b);
+      if (end ? t < at : t > at)
+        at = t, side = k;
+    }
+    if (side < 0)
+      continue; /* the eye is inside */
+    double point[3];
+    for (int k = 0; k < 3; ++k)
+      point[k] = (double)(eye[k] + at * direction[k]);
+    normal[side] = direction[side] > 0 ? -1 : 1;
+    Event *event = &events[count++];
+    *event = (Event){.begin = at, .opacity = r->boundary->opacity};
+    color_at(r, slanted(point), event->color);
+    for (int k = 0; k < 3 && r->boundary->colored; ++k)
+      event->color[k] = r->boundary->color[k];
+    if (r->shading->shade)
+      light_up(r->shading, normal, direction, event->color);
+  }
+  return count;
+}
+
 /* The pixel; false: rounding decides what the ray meets. */
 static bool trace(const Reference *r, const double eye[3], const double direction[3], Real rgba[4]) {
   Event events[4096];
@@ -302,36 +339,56 @@ static bool trace(const Reference *r, const double eye[3], const double directio
       continue;
     if (to - from < 1e-10L)
       return false;
-    Real done = from;
-    for (int turn = 0; turn <= r->count; ++turn) { /* nearest first */
-      const TetcastIsosurface *surface = turn < r->count ? &r->surfaces[a < b ? turn : r->count - 1 - turn] : NULL;
-      if (surface && (fabsl(a - surface->value) < 1e-12L || fabsl(b - surface->value) < 1e-12L))
+    Event cuts[32]; /* what is met in the cell */
+    int cut_count = 0;
+    for (int i = 0; i < r->count; ++i) {
+      const TetcastIsosurface *surface = &r->surfaces[i];
+      if (fabsl(a - surface->value) < 1e-12L || fabsl(b - surface->value) < 1e-12L)
         return false;
-      if (surface && (a >= surface->value) == (b >= surface->value))
+      if ((a >= surface->value) == (b >= surface->value))
         continue;
-      const Real at = surface ? from + (to - from) * (surface->value - a) / (b - a) : to;
-      const Real middle = value_at(&linear, eye, direction, (done + at) / 2);
+      Event *cut = &cuts[cut_count++];
+      *cut = (Event){.begin = from + (to - from) * (surface->value - a) / (b - a), .opacity = surface->opacity};
+      for (int k = 0; k < 3; ++k)
+        cut->color[k] = surface->color[k];
+      if (r->shading->shade) {
+        Real point[3], normal[3];
+        for (int k = 0; k < 3; ++k)
+          point[k] = eye[k] + cut->begin * direction[k];
+        gradient_at(r, cell, &linear, point, normal);
+        for (int k = 0; k < 3 && a < b; ++k)
+          normal[k] = -normal[k];
+        light_up(r->shading, normal, direction, cut->color);
+      }
+    }
+    for (int i = 0; i < r->slice_count; ++i) {
+      const TetcastSlice *slice = &r->slices[i];
+      Real along = 0, at = slice->offset;
+      for (int k = 0; k < 3; ++k)
+        at -= (Real)slice->normal[k] * eye[k], along += (Real)slice->normal[k] * direction[k];
+      at /= along;
+      if (fabsl(at - from) < 1e-12L || fabsl(at - to) < 1e-12L)
+        return false;
+      if (!(at > from && at < to))
+        continue;
+      Event *cut = &cuts[cut_count++];
+      *cut = (Event){.begin = at, .opacity = slice->opacity};
+      color_at(r, value_at(&linear, eye, direction, at), cut->color);
+    }
+    qsort(cuts, (size_t)cut_count, sizeof *cuts, by_begin);
+    Real done = from;
+    for (int i = 0; i <= cut_count; ++i) {
+      const Real at = i < cut_count ? cuts[i].begin : to, middle = value_at(&linear, eye, direction, (done + at) / 2);
       events[count++] =
           (Event){.begin = done, .length = at - done, .depth = (r->low + (r->high - r->low) * middle) * (at - done)};
-      if (surface) {
-        Event *event = &events[count++];
-        *event = (Event){.begin = at, .opacity = surface->opacity};
-        for (int k = 0; k < 3; ++k)
-          event->color[k] = surface->color[k];
-        if (r->shading->shade) {
-          Real point[3], normal[3];
-          for (int k = 0; k < 3; ++k)
-            point[k] = eye[k] + at * direction[k];
-          gradient_at(r, cell, &linear, point, normal);
-          for (int k = 0; k < 3 && a < b; ++k)
-            normal[k] = -normal[k];
-          light_up(r->shading, normal, direction, event->color);
-        }
-      }
+      if (i < cut_count)
+        events[count++] = cuts[i];
       done = at;
     }
     assert_true(count < 4000);
   }
+  if (r->boundary)
+    count = add_boundary(r, eye, direction, events, count);
   qsort(events, (size_t)count, sizeof *events, by_begin);
   Real left = 1;
   memset(rgba, 0, 4 * sizeof *rgba);
@@ -422,6 +479,133 @@ static void pictures_are_as_brute_force_has_them(void **state) {
     assert_true(compared > PIXELS * 9 / 10 && met > PIXELS / 50);
     tetcast_frame_destroy(&frame);
     free(r.gradients);
+    free(values);
+    world_end(&world);
+  }
+}
+
+/* Slices and the boundary in the colours of the scalar, with isosurfaces between them; the field is linear, so that the
+ * boundary's values are known. A slice in one of the cube's sides is left to rounding. */
+static void slices_and_the_boundary_as_well(void **state) {
+  (void)state;
+  static const TetcastIsosurface surfaces[] = {{.value = 0.25, .color = {1, 0, 0.25}, .opacity = 0.5}};
+  static const TetcastSlice slices[] = {{.normal = {0, 0, -3}, .offset = -0.9, .opacity = 0.5},
+                                        {.normal = {1, 2, 0.5}, .offset = 1.6, .opacity = 0.75},
+                                        {.normal = {1, 0, 0}, .offset = 7, .opacity = 1}};
+  static const TetcastBoundary boundaries[] = {{.opacity = 0.25}, {.opacity = 0.5, .colored = 1, .color = {0, 0.5, 1}}};
+  const TetcastCamera cameras[] = {camera_of(2.1, 1.7, 3.3, 0.5, 0.5, 0.5), camera_of(0.43, 0.52, 0.61, 1, 0.2, 0),
+                                   parallel(3, 2, 4, 1.6)};
+  for (int i = 0; i < 12; ++i) {
+    World world;
+    world_begin(&world, 5, 0.6, 1, i % 4 == 3 ? TETCAST_TRAVERSAL_FACES : TETCAST_TRAVERSAL_SHELL);
+    double *values = malloc((size_t)world.cube.vertex_count * sizeof *values);
+    for (int64_t j = 0; j < world.cube.vertex_count; ++j)
+      values[j] = slanted(&world.cube.vertices[3 * j]);
+    set_values(&world, values, TETCAST_POINT);
+    TetcastShadingDesc shading = tetcast_shading_desc_default();
+    shading.shade = i % 2 ? TETCAST_SHADE_SURFACES : TETCAST_SHADE_NONE;
+    shading.normals = TETCAST_NORMALS_FLAT;
+    assert_int_equal(tetcast_scene_set_shading(world.scene, &shading), TETCAST_OK);
+    Reference r = {.cube = &world.cube,
+                   .values = values,
+                   .surfaces = surfaces,
+                   .count = i / 4 == 1 ? 0 : 1,
+                   .shading = &shading,
+                   .slices = slices,
+                   .slice_count = i / 4 == 2 ? 0 : 3,
+                   .boundary = i % 4 == 3 ? NULL : &boundaries[i % 2],
+                   .colors = {{0.75, 0.25, 0.5}, {0.25, 0.5, 1}}};
+    static const double fog[3] = {0.25, 0.5, 0.125};
+    double knots[2][4] = {{-1, 0, 0, 0}, {2, 0, 0, 0}};
+    for (int k = 0; k < 3; ++k) { /* linear over all values there are, and no less than 0 */
+      r.colors[1][k] = r.colors[0][k] + 0.25 * (k - 1);
+      knots[0][1 + k] = 2 * r.colors[0][k] - r.colors[1][k];
+      knots[1][1 + k] = 2 * r.colors[1][k] - r.colors[0][k];
+    }
+    if (i >= 8) { /* a fog needs one colour */
+      for (int k = 0; k < 3; ++k)
+        r.fog[k] = r.colors[0][k] = r.colors[1][k] = knots[0][1 + k] = knots[1][1 + k] = fog[k];
+      r.low = 0.5;
+      r.high = 0.75;
+    }
+    const double extinction[2][2] = {{-1, 2 * r.low - r.high}, {2, 2 * r.high - r.low}};
+    TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
+    desc.color = knots[0];
+    desc.color_count = 2;
+    desc.extinction = extinction[0];
+    desc.extinction_count = 2;
+    TetcastTransferFunction *transfer = NULL;
+    assert_int_equal(tetcast_transfer_function_create(world.fixture.context, &desc, &transfer), TETCAST_OK);
+    assert_int_equal(tetcast_scene_set_transfer_function(world.scene, transfer), TETCAST_OK);
+    tetcast_transfer_function_destroy(&transfer);
+    set_surfaces(&world, surfaces, r.count);
+    assert_int_equal(tetcast_scene_set_slices(world.scene, slices, r.slice_count), TETCAST_OK);
+    assert_int_equal(tetcast_scene_set_boundary(world.scene, r.boundary), TETCAST_OK);
+    const TetcastCamera *camera = &cameras[i % 3];
+    TetcastFrame *frame = shoot(&world, camera, W, H, 0);
+    int compared = 0;
+    for (int p = 0; p < PIXELS; ++p) {
+      double eye[3], direction[3], begin, end;
+      Real wanted[4];
+      ray_of(camera, W, H, p, eye, direction);
+      if (!chord(eye, direction, &begin, &end) || end - begin < 1e-9 || !trace(&r, eye, direction, wanted))
+        continue;
+      ++compared;
+      for (int k = 0; k < 4; ++k) {
+        const double got = pixels_of(frame)[4 * p + k];
+        if (!(fabsl(got - wanted[k]) <= 1e-13))
+          fail_msg("world %d, pixel %d, channel %d: %.17g, not %.17Lg", i, p, k, got, wanted[k]);
+      }
+    }
+    assert_true(compared > PIXELS / 8);
+    tetcast_frame_destroy(&frame);
+    free(values);
+    world_end(&world);
+  }
+}
+
+/* A slice closes the clip that has its plane, to the last pixel: rays that begin there begin on it. Cells have their
+ * own colours on it. */
+static void a_slice_closes_a_clip(void **state) {
+  (void)state;
+  static const TetcastSlice slice = {.normal = {1, -2, 0.7}, .offset = -0.13, .opacity = 1};
+  static const TetcastHalfSpace half_spaces[] = {{.normal = {1, -2, 0.7}, .offset = -0.13},
+                                                 {.normal = {-1, 2, -0.7}, .offset = 0.13}};
+  const TetcastCamera cameras[] = {camera_of(2.1, 1.7, 3.3, 0.5, 0.5, 0.5), parallel(3, 2, 4, 1.6),
+                                   camera_of(-2.1, -1.7, 0.5, 0.5, 0.5, 0.5)};
+  for (int i = 0; i < 12; ++i) {
+    World world;
+    world_begin(&world, 5, 0.6, 1, i / 6 ? TETCAST_TRAVERSAL_FACES : TETCAST_TRAVERSAL_SHELL);
+    double *values = malloc((size_t)world.cube.cell_count * sizeof *values);
+    for (int64_t j = 0; j < world.cube.cell_count; ++j)
+      values[j] = 0.25 * (double)(j % 5);
+    set_values(&world, values, TETCAST_CELL);
+    static const double knots[2][4] = {{0, 0, 1, 0.5}, {1, 1, 0, 0.5}}, nothing[2] = {0, 0};
+    TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
+    desc.color = knots[0];
+    desc.color_count = 2;
+    desc.extinction = nothing;
+    desc.extinction_count = 1;
+    TetcastTransferFunction *transfer = NULL;
+    assert_int_equal(tetcast_transfer_function_create(world.fixture.context, &desc, &transfer), TETCAST_OK);
+    assert_int_equal(tetcast_scene_set_transfer_function(world.scene, transfer), TETCAST_OK);
+    tetcast_transfer_function_destroy(&transfer);
+    assert_int_equal(tetcast_scene_set_slices(world.scene, &slice, 1), TETCAST_OK);
+    const TetcastCamera *camera = &cameras[i % 3];
+    TetcastFrame *whole = shoot(&world, camera, W, H, 0);
+    assert_int_equal(tetcast_scene_set_clip(world.scene, &half_spaces[i / 3 % 2], 1), TETCAST_OK);
+    TetcastFrame *clipped = shoot(&world, camera, W, H, 0);
+    int met = 0;
+    for (int p = 0; p < PIXELS; ++p) {
+      const double *rgba = pixels_of(whole) + 4 * p;
+      met += rgba[3] == 1;
+      assert_true(rgba[3] == 0 || (rgba[3] == 1 && fabs(4 * rgba[0] - rint(4 * rgba[0])) < 1e-14));
+      assert_memory_equal(rgba, pixels_of(clipped) + 4 * p, 4 * sizeof(double));
+    }
+    if (met <= PIXELS / 50)
+      fail_msg("world %d: %d pixels", i, met);
+    tetcast_frame_destroy(&whole);
+    tetcast_frame_destroy(&clipped);
     free(values);
     world_end(&world);
   }
@@ -697,6 +881,8 @@ static void what_is_not_possible_is_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(planes_lie_where_they_should),
                                      cmocka_unit_test(pictures_are_as_brute_force_has_them),
+                                     cmocka_unit_test(slices_and_the_boundary_as_well),
+                                     cmocka_unit_test(a_slice_closes_a_clip),
                                      cmocka_unit_test(crossings_are_even_from_outside),
                                      cmocka_unit_test(constant_cells_are_no_surface),
                                      cmocka_unit_test(what_is_passed_is_empty),

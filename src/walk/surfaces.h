@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Surfaces that rays meet between the parts of their segments, as kernels are given them. */
+#ifndef TC_WALK_SURFACES_H
+#define TC_WALK_SURFACES_H
+
+#include <tetcast/isosurface.h>
+#include <tetcast/slice.h>
+
+#include "optics/light.h"
+#include "volume/gradients.h"
+#include "walk/clip.h"
+
+typedef struct TcSurfaces {
+  int count;
+  const TetcastIsosurface *surface; /* [count], values ascending, as the field is stored */
+  const TcGradients *smooth;        /* NULL: normals are those of cells */
+  const TcLighting *lighting;       /* NULL: no light falls on them */
+  int slice_count;
+  TcHalfSpace slice[TETCAST_MAX_SLICES];
+  double slice_opacity[TETCAST_MAX_SLICES];
+  TetcastBoundary boundary; /* opacity 0: it is not seen */
+  double largest[3];        /* of all their colours, as they are seen */
+} TcSurfaces;
+
+#endif
