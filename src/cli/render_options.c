@@ -21,7 +21,7 @@
 #define DIRECT (BIT(OPTION_EXTINCTION) | BIT(OPTION_EMISSION) | BIT(OPTION_GROUPS))
 #define TRANSFER                                                                                                       \
   (BIT(OPTION_ARRAY) | BIT(OPTION_TRANSFER) | BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | BIT(OPTION_OPACITY_MODEL) |     \
-   BIT(OPTION_BLEND) | BIT(OPTION_ISOSURFACE))
+   BIT(OPTION_BLEND) | BIT(OPTION_ISOSURFACE) | BIT(OPTION_SLICE) | BIT(OPTION_SURFACE))
 
 /* Order of the library's enumerations. */
 static const char *const opacity_models[] = {"unit-distance", "vtk-unstructured", "ospray", NULL};
@@ -67,6 +67,10 @@ const RenderRow render_table[OPTION_COUNT] = {
     [OPTION_ISOSURFACE] =
         {"isosurface", KIND_LIST, AT(isosurfaces), .most = TETCAST_MAX_ISOSURFACES, .excludes = DIRECT,
          .form = "expected VALUE[:COLOUR][:OPACITY], a number, a name or #rrggbb or r,g,b, and a number from 0 to 1"},
+    [OPTION_SLICE] = {"slice", KIND_LIST, AT(slices), .most = TETCAST_MAX_SLICES, .excludes = DIRECT,
+                      .form = "expected nx,ny,nz,d[:OPACITY]: four numbers, nx,ny,nz not 0,0,0, and one from 0 to 1"},
+    [OPTION_SURFACE] = {"surface", KIND_OPTIONAL, AT(surface), .excludes = DIRECT,
+                        .form = "expected [COLOUR][:OPACITY], a name, #rrggbb or r,g,b, and a number from 0 to 1"},
     [OPTION_SHADE] = {"shade", KIND_CHOICE, AT(shade), .names = shades, .form = "expected none or surfaces"},
     [OPTION_NORMALS] = {"normals", KIND_CHOICE, AT(normals), .names = normals, .form = "expected smooth or flat"},
     [OPTION_MATERIAL] = {"material", KIND_NUMBERS, AT(material), 4, 4, 0, 10000,
@@ -153,9 +157,10 @@ static void clear_list(TextList *list) {
 
 void render_options_release(RenderOptions *options) {
   clear_list(&options->isosurfaces);
+  clear_list(&options->slices);
   clear_list(&options->lights);
   for (int id = 0; id < OPTION_COUNT; id++)
-    if (render_table[id].kind == KIND_TEXT || render_table[id].kind == KIND_PATH)
+    if (render_option_is_text((OptionId)id))
       free(*(char **)((char *)options + render_table[id].at));
   json_decref(options->transfer_object);
   release_inputs(options);
@@ -186,6 +191,11 @@ bool render_option_is_path(OptionId id) {
 
 bool render_option_is_flag(OptionId id) {
   return render_table[id].kind == KIND_FLAG;
+}
+
+bool render_option_is_text(OptionId id) {
+  const OptionKind kind = render_table[id].kind;
+  return kind == KIND_TEXT || kind == KIND_PATH || kind == KIND_OPTIONAL;
 }
 
 bool render_option_is_list(OptionId id) {
@@ -360,9 +370,12 @@ static const char *set_choice(OptionId id, void *at, const OptionValue *value) {
 static const char *add_to_list(OptionId id, TextList *list, const OptionValue *value) {
   TetcastIsosurface isosurface;
   TetcastLight light;
+  TetcastSlice slice;
   bool colored;
-  if (!value->text || !(id == OPTION_LIGHT ? surfaces_parse_light(value->text, &light)
-                                           : surfaces_parse(value->text, &isosurface, &colored)))
+  const char *text = value->text;
+  if (!text || !(id == OPTION_LIGHT   ? surfaces_parse_light(text, &light)
+                 : id == OPTION_SLICE ? surfaces_parse_slice(text, &slice)
+                                      : surfaces_parse(text, &isosurface, &colored)))
     return render_table[id].form;
   if (list->count == render_table[id].most)
     return "there are too many of them";
@@ -401,7 +414,10 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
     *(int *)at = value->count == 1 && value->numbers[0] != 0;
     return NULL;
   default:
-    if (!value->text || !*value->text)
+    if (!value->text || (!*value->text && render_table[id].kind != KIND_OPTIONAL))
+      return render_table[id].form;
+    TetcastBoundary boundary;
+    if (id == OPTION_SURFACE && !surfaces_parse_boundary(value->text, &boundary))
       return render_table[id].form;
     TetcastIntegrator integrator;
     int n;

@@ -32,6 +32,8 @@ typedef enum OptionId {
   OPTION_GROUPS,
   OPTION_BLEND,
   OPTION_ISOSURFACE,
+  OPTION_SLICE,
+  OPTION_SURFACE,
   OPTION_SHADE,
   OPTION_NORMALS,
   OPTION_MATERIAL,
@@ -78,13 +80,13 @@ typedef struct RenderOptions {
   RenderCommand command;
   /* NULL unless given */
   char *input, *output, *array, *block, *time, *transfer, *preset, *extinction, *emission, *integrator, *channels,
-      *stats, *scene, *save_scene;
+      *surface, *stats, *scene, *save_scene;
   char **inputs; /* [input_count] of several files, the steps of a series; input is the first. NULL: one file */
   int input_count;
   json_t *transfer_object; /* of a scene file; instead of transfer */
   double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], tolerance, threads, repeat;
   double material[4];
-  TextList isosurfaces, lights;
+  TextList isosurfaces, slices, lights;
   double merge_tolerance; /* negative unless given */
   RangeKind range_kind;   /* RANGE_FIXED: options->range */
   double subdivide;
@@ -114,6 +116,8 @@ OptionId render_option_find(const char *key);
 const char *render_option_key(OptionId id);
 bool render_option_is_path(OptionId id);
 bool render_option_is_flag(OptionId id);
+/* Whether its value is a text, which the options own. */
+bool render_option_is_text(OptionId id);
 /* Whether it may be given several times, each adding to what it has. */
 bool render_option_is_list(OptionId id);
 
@@ -147,9 +151,15 @@ static inline TetcastBlend render_options_blend(const RenderOptions *options) {
   return render_options_given(options, OPTION_BLEND) ? (TetcastBlend)options->blend : TETCAST_BLEND_COMPOSITE;
 }
 
-/* Whether isosurfaces are all there is to see: no transfer function was given beside them. */
+/* Whether there are surfaces of any kind. */
+static inline bool render_options_surfaces(const RenderOptions *options) {
+  return render_options_given(options, OPTION_ISOSURFACE) || render_options_given(options, OPTION_SLICE) ||
+         render_options_given(options, OPTION_SURFACE);
+}
+
+/* Whether surfaces are all there is to see: no transfer function was given beside them. */
 static inline bool render_options_surfaces_alone(const RenderOptions *options) {
-  return render_options_given(options, OPTION_ISOSURFACE) && !render_options_given(options, OPTION_TRANSFER);
+  return render_options_surfaces(options) && !render_options_given(options, OPTION_TRANSFER);
 }
 
 /* The TetcastChannel bits of a list as --channels has it, 0: there is something else in it. */
@@ -181,7 +191,8 @@ typedef enum OptionKind {
   KIND_INTEGERS,
   KIND_CHOICE,
   KIND_FLAG,
-  KIND_LIST
+  KIND_LIST,
+  KIND_OPTIONAL
 } OptionKind;
 
 #define BIT(id)    (UINT64_C(1) << (id))

@@ -13,6 +13,7 @@
 #include "color.h"
 #include "completion.h"
 #include "scene_file.h"
+#include "surface_text.h"
 #include "view.h"
 
 static const char *command_name(const RenderOptions *options) {
@@ -22,17 +23,18 @@ static const char *command_name(const RenderOptions *options) {
 /* What of coefficients and what of a transfer function doesn't go together. NULL: nothing. */
 static const char *find_mixture(const RenderOptions *options) {
   const uint32_t channels = render_options_channels(options);
-  if (render_options_given(options, OPTION_ISOSURFACE)) {
+  if (render_options_surfaces(options)) {
     if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
-      return "--isosurface: needs --blend composite";
+      return "--isosurface, --slice, --surface: need --blend composite";
     if (options->integrator && strcmp(options->integrator, "exact"))
-      return "--integrator: with --isosurface there is only exact";
+      return "--integrator: with --isosurface, --slice or --surface there is only exact";
     if (channels & TETCAST_CHANNEL_ERROR)
-      return "--channels error: not possible with --isosurface; where a surface is seen edge-on, rounding decides "
+      return "--channels error: not possible with --isosurface, --slice or --surface; where a surface is seen edge-on, "
+             "rounding decides "
              "whether "
              "a ray meets it";
   } else if (options->given & (BIT(OPTION_SHADE) | BIT(OPTION_NORMALS) | BIT(OPTION_MATERIAL) | BIT(OPTION_LIGHT))) {
-    return "--shade, --normals, --material, --light: need --isosurface, on which the light falls";
+    return "--shade, --normals, --material, --light: need --isosurface or --surface, on which the light falls";
   }
   if (!render_options_direct(options)) {
     if (render_options_groups(options))
@@ -137,12 +139,20 @@ static void list_words(RenderCommand command, struct option words[OPTION_COUNT +
       continue;
     if (ids)
       ids[count] = (OptionId)id;
-    words[count++] =
-        (struct option){render_table[id].name, render_table[id].kind == KIND_FLAG ? no_argument : required_argument,
-                        NULL, WORD_OPTION + id};
+    words[count++] = (struct option){render_table[id].name,
+                                     render_table[id].kind == KIND_FLAG       ? no_argument
+                                     : render_table[id].kind == KIND_OPTIONAL ? optional_argument
+                                                                              : required_argument,
+                                     NULL, WORD_OPTION + id};
   }
   words[count++] = (struct option){"help", no_argument, NULL, WORD_HELP};
   words[count] = (struct option){NULL, 0, NULL, 0};
+}
+
+/* The value of an option that may have none: the next word, if it can be that. */
+static const char *take_optional(int argc, char **argv) {
+  TetcastBoundary boundary;
+  return optind < argc && surfaces_parse_boundary(argv[optind], &boundary) ? argv[optind++] : "";
 }
 
 /* The words of the command line; with `scene_only` everything but the options --scene and --help is left for later. */
@@ -162,9 +172,12 @@ static int parse_words(RenderOptions *options, int argc, char **argv, bool scene
     const OptionId id = code == WORD_OUTPUT ? OPTION_OUTPUT : (OptionId)(code - WORD_OPTION);
     if (code == WORD_OUTPUT && !strcmp(optarg, "utput"))
       return cli_usage_error(command_name(options), "unknown option -output; did you mean --output?");
+    const char *text = optarg;
+    if (!text && render_table[id].kind == KIND_OPTIONAL)
+      text = take_optional(argc, argv);
     if (scene_only != (id == OPTION_SCENE))
       continue;
-    const int result = set_from_text(options, id, optarg);
+    const int result = set_from_text(options, id, text);
     if (result >= 0)
       return result;
   }
@@ -189,7 +202,7 @@ static void take_scene(RenderOptions *options) {
   for (int id = 0; id < OPTION_COUNT; id++)
     if (id == OPTION_OUTPUT || !render_option_of_command((OptionId)id, options->command)) {
       options->given &= ~BIT(id);
-      if (render_table[id].kind == KIND_TEXT || render_table[id].kind == KIND_PATH) {
+      if (render_option_is_text((OptionId)id)) {
         char **text = (char **)((char *)options + render_table[id].at);
         free(*text);
         *text = NULL;
@@ -211,9 +224,10 @@ static int check_use(const RenderOptions *options) {
         "converge",
         "--blend %s: values along rays are always exact, there is nothing to compare; a report is about composite",
         render_option_choice(OPTION_BLEND, options->blend));
-  if (options->command == COMMAND_CONVERGE && render_options_given(options, OPTION_ISOSURFACE))
-    return cli_usage_error("converge",
-                           "--isosurface: a report is about what integrators make of the volume, without surfaces");
+  if (options->command == COMMAND_CONVERGE && render_options_surfaces(options))
+    return cli_usage_error(
+        "converge",
+        "--isosurface, --slice, --surface: a report is about what integrators make of the volume, without surfaces");
   char *mistaken = options->input ? scene_file_mistaken(options->input) : NULL;
   const int result = mistaken ? cli_usage_error(command_name(options), "%s", mistaken) : -1;
   free(mistaken);

@@ -215,9 +215,14 @@ static json_t *text_array(const TextList *list) {
 }
 
 static void write_surfaces(json_t *scene, const RenderOptions *options) {
-  if (!render_options_given(options, OPTION_ISOSURFACE))
+  if (!render_options_surfaces(options))
     return;
-  json_object_set_new(scene, "isosurface", text_array(&options->isosurfaces));
+  if (options->isosurfaces.count > 0)
+    json_object_set_new(scene, "isosurface", text_array(&options->isosurfaces));
+  if (options->slices.count > 0)
+    json_object_set_new(scene, "slice", text_array(&options->slices));
+  if (options->surface)
+    json_object_set_new(scene, "surface", json_string(options->surface));
   if (render_options_given(options, OPTION_SHADE))
     json_object_set_new(scene, "shade", json_string(render_option_choice(OPTION_SHADE, options->shade)));
   if (render_options_given(options, OPTION_NORMALS))

@@ -258,7 +258,7 @@ static char *explain_blank(const Probe *probe, const Look *look) {
   if (render_options_blend(&run->options) != TETCAST_BLEND_COMPOSITE)
     return cli_duplicate("what the camera sees is too small for these pixels");
   if (render_options_surfaces_alone(&run->options))
-    return cli_duplicate("no isosurface lies in what the camera sees, or all of them are transparent");
+    return cli_duplicate("no surface lies in what the camera sees, or all of them are transparent");
   const double extinction = largest_extinction(run, run->stage.range);
   if (!(extinction > 0)) {
     char *support = explain_support(run);
@@ -380,8 +380,8 @@ char *sight_fault(const Run *run) {
   if (direct) /* what is not 0 but too dark is told apart */
     blank = look.most_color == 0 && (data ? look.most_alpha == 0 : look.most_alpha < visible);
   const bool projected =
-      render_options_blend(&run->options) != TETCAST_BLEND_COMPOSITE;           /* in which nothing hides anything */
-  const bool surfaces = render_options_given(&run->options, OPTION_ISOSURFACE); /* which may well be opaque */
+      render_options_blend(&run->options) != TETCAST_BLEND_COMPOSITE; /* in which nothing hides anything */
+  const bool surfaces = render_options_surfaces(&run->options);       /* which may well be opaque */
   const bool solid = !data && !projected && !surfaces && look.seen && !look.translucent;
   const double *bounds = run->stage.info.bounds;
   Probe probe = {.run = run};

@@ -245,8 +245,10 @@ static TetcastStatus set_transfer_function(Stage *stage, const RenderOptions *op
                       : tetcast_scene_create_preset(stage->scene, render_options_preset(options), range[0], range[1],
                                                     &stage->transfer_function);
   }
-  if (status == TETCAST_OK && !render_options_surfaces_alone(options))
-    status = tetcast_scene_set_transfer_function(stage->scene, stage->transfer_function);
+  if (status == TETCAST_OK)
+    status = render_options_surfaces_alone(options)
+                 ? surfaces_set_colors(stage->context, stage->scene, stage->transfer_function)
+                 : tetcast_scene_set_transfer_function(stage->scene, stage->transfer_function);
   if (status == TETCAST_OK)
     status = surfaces_set(stage->scene, options, stage->transfer_function, stage->range);
   return status;

@@ -32,26 +32,55 @@ static bool parse_color(const char *text, double color[3]) {
   return true;
 }
 
-bool surfaces_parse(const char *text, TetcastIsosurface *isosurface, bool *colored) {
-  *isosurface = (TetcastIsosurface){.opacity = 1};
-  *colored = false;
+/* [COLOUR][:OPACITY] or OPACITY, to the end of the text; NULL is neither. False: it is something else. */
+static bool parse_look(const char *text, double color[3], int *colored, double *opacity) {
+  char *part;
   bool fine = true, done = false;
-  char *part = next_part(&text);
-  fine = part && cli_parse_number(part, &isosurface->value) && isfinite(isosurface->value);
-  free(part);
+  *colored = 0;
+  *opacity = 1;
   while (fine && (part = next_part(&text))) {
-    double opacity;
-    if (cli_parse_number(part, &opacity)) { /* the last */
-      fine = !done && opacity >= 0 && opacity <= 1;
-      isosurface->opacity = opacity;
+    if (cli_parse_number(part, opacity)) { /* the last */
+      fine = !done && *opacity >= 0 && *opacity <= 1;
       done = true;
     } else {
-      fine = !done && !*colored && parse_color(part, isosurface->color);
-      *colored = true;
+      fine = !done && !*colored && parse_color(part, color);
+      *colored = 1;
     }
     free(part);
   }
   return fine;
+}
+
+bool surfaces_parse(const char *text, TetcastIsosurface *isosurface, bool *colored) {
+  *isosurface = (TetcastIsosurface){.opacity = 1};
+  int has_color;
+  char *value = next_part(&text);
+  const bool fine = value && cli_parse_number(value, &isosurface->value) && isfinite(isosurface->value) &&
+                    parse_look(text, isosurface->color, &has_color, &isosurface->opacity);
+  *colored = fine && has_color;
+  free(value);
+  return fine;
+}
+
+bool surfaces_parse_slice(const char *text, TetcastSlice *slice) {
+  double numbers[4], color[3];
+  int colored;
+  char *plane = next_part(&text);
+  const bool fine = plane && cli_parse_numbers(plane, ',', 4, numbers) == 4 && isfinite(numbers[3]) &&
+                    isfinite(numbers[0]) && isfinite(numbers[1]) && isfinite(numbers[2]) &&
+                    (numbers[0] != 0 || numbers[1] != 0 || numbers[2] != 0) &&
+                    parse_look(text, color, &colored, &slice->opacity) && !colored;
+  free(plane);
+  if (fine) {
+    memcpy(slice->normal, numbers, sizeof slice->normal);
+    slice->offset = numbers[3];
+  }
+  return fine;
+}
+
+bool surfaces_parse_boundary(const char *text, TetcastBoundary *boundary) {
+  *boundary = (TetcastBoundary){.opacity = 1};
+  return !*text || parse_look(text, boundary->color, &boundary->colored, &boundary->opacity);
 }
 
 bool surfaces_parse_light(const char *text, TetcastLight *light) {

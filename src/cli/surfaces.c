@@ -20,6 +20,21 @@ static void color_at(const TetcastTransferFunction *transfer_function, double va
     color[k] = a[1 + k] + part * (b[1 + k] - a[1 + k]);
 }
 
+TetcastStatus surfaces_set_colors(TetcastContext *context, TetcastScene *scene,
+                                  const TetcastTransferFunction *transfer_function) {
+  static const double nothing[2] = {0, 0};
+  TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
+  desc.color = tetcast_transfer_function_color(transfer_function, &desc.color_count);
+  desc.extinction = nothing;
+  desc.extinction_count = 1;
+  TetcastTransferFunction *colors = NULL;
+  TetcastStatus status = tetcast_transfer_function_create(context, &desc, &colors);
+  if (status == TETCAST_OK)
+    status = tetcast_scene_set_transfer_function(scene, colors);
+  tetcast_transfer_function_destroy(&colors);
+  return status;
+}
+
 static TetcastStatus set_isosurfaces(TetcastScene *scene, const TextList *list,
                                      const TetcastTransferFunction *transfer_function, const double range[2]) {
   TetcastIsosurface *isosurfaces = cli_allocate(sizeof *isosurfaces * (size_t)(list->count + 1));
@@ -40,9 +55,17 @@ static TetcastStatus set_isosurfaces(TetcastScene *scene, const TextList *list,
 
 TetcastStatus surfaces_set(TetcastScene *scene, const RenderOptions *options,
                            const TetcastTransferFunction *transfer_function, const double range[2]) {
-  if (!render_options_given(options, OPTION_ISOSURFACE))
+  if (!render_options_surfaces(options))
     return TETCAST_OK;
-  const TetcastStatus status = set_isosurfaces(scene, &options->isosurfaces, transfer_function, range);
+  TetcastSlice slices[TETCAST_MAX_SLICES];
+  TetcastBoundary boundary;
+  for (int i = 0; i < options->slices.count; i++)
+    surfaces_parse_slice(options->slices.text[i], &slices[i]);
+  TetcastStatus status = set_isosurfaces(scene, &options->isosurfaces, transfer_function, range);
+  if (status == TETCAST_OK)
+    status = tetcast_scene_set_slices(scene, slices, options->slices.count);
+  if (status == TETCAST_OK && options->surface && surfaces_parse_boundary(options->surface, &boundary))
+    status = tetcast_scene_set_boundary(scene, &boundary);
   if (status != TETCAST_OK)
     return status;
   TetcastLight lights[TETCAST_MAX_LIGHTS];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Isosurfaces and the light on them, from options to the scene. */
+/* Isosurfaces, slices, the mesh's boundary and the light on them, from options to the scene. */
 #ifndef TETCAST_CLI_SURFACES_H
 #define TETCAST_CLI_SURFACES_H
 
@@ -7,7 +7,11 @@
 
 #include "render_options.h"
 
-/* Gives the scene its isosurfaces and light. Those without a colour of their own have that of `transfer_function`;
+/* Gives the scene a transfer function with the colours of this one, by which nothing of the volume is seen. */
+TetcastStatus surfaces_set_colors(TetcastContext *context, TetcastScene *scene,
+                                  const TetcastTransferFunction *transfer_function);
+
+/* Gives the scene its surfaces and light. Isosurfaces without a colour of their own have that of `transfer_function`;
  * `range` is that of the field's values. */
 TetcastStatus surfaces_set(TetcastScene *scene, const RenderOptions *options,
                            const TetcastTransferFunction *transfer_function, const double range[2]);

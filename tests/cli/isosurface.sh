@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# tetcast render --isosurface: colours, light, scenes, series, and what is refused.
+# tetcast render --isosurface, --slice, --surface: colours, light, scenes, series, and what is refused.
 . "$(dirname "$0")/lib.sh"
 needs vtk openimageio
 vtu cube.vtu "$five_tetrahedra" 10 # s = x + 2 y + 3 z
@@ -37,20 +37,41 @@ sed 's/"isosurface": \[[^]]*\]/"isosurface": "3:red"/' red.json >text.json
 accept render --scene text.json -o again.png
 same again.png red.png 'a single one as text'
 
+# A slice has the colours of the scalar, or of the cells; the boundary those or one. Its value may be the next word.
+accept render cube.vtu -o slice.png --array s --slice 0,0,1,0.5 $down
+accept render cube.vtu -o same.png --array s --slice 0,0,-3,-1.5:1 --slice 1,0,0,7 $down --save-scene slice.json
+same slice.png same.png 'one plane'
+accept render cube.vtu -o cells.png --array 'c d' --slice 0,0,1,0.5:0.5 $down
+accept render cube.vtu -o surface.png --array s --surface blue:0.5 --shade none $down --save-scene surface.json
+accept render cube.vtu -o other.png --array s --surface=0,0,1:0.5 --shade none $down
+same surface.png other.png 'one colour in two ways'
+accept render --array s --surface cube.vtu -o scalar.png $down
+accept render --array s --surface 0.5 cube.vtu -o half.png $down
+differ scalar.png surface.png colour
+differ scalar.png half.png opacity
+for name in slice surface; do
+  accept render --scene $name.json -o again.png
+  same again.png $name.png "scene of $name"
+done
+
 warn 'values lie between 0 and 6' render cube.vtu -o none.png --array s --isosurface 7 --isosurface 1 $down
-warn 'the picture shows nothing: no isosurface' render cube.vtu -o none.png --array s --isosurface 1:red:0 $down
+warn 'the picture shows nothing: no surface' render cube.vtu -o none.png --array s --isosurface 1:red:0 $down
 
 for text in x 3:nocolour 3:0.5:red 3:red:2 3: 3:red:blue nan; do
   refuse 2 'expected VALUE' render cube.vtu --array s --isosurface $text
 done
+refuse 2 'expected nx,ny,nz,d' render cube.vtu --slice 0,0,0,1
+refuse 2 'expected nx,ny,nz,d' render cube.vtu --slice 1,0,0,1:red
+refuse 2 'expected [COLOUR]' render cube.vtu --surface=2
+refuse 1 'traversal shell only' render cube.vtu -o a.png --array s --surface --traversal faces
 for text in 0,0,0 1,2 1,2,3:5 1,2,3:red:red; do
   refuse 2 'expected x,y,z' render cube.vtu --array s --isosurface 3 --light $text
 done
 refuse 2 'expected ambient' render cube.vtu --array s --isosurface 3 --material 1,1,1,0
-refuse 2 'need --isosurface' render cube.vtu --array s --light 1,0,0
+refuse 2 'need --isosurface or --surface' render cube.vtu --array s --light 1,0,0
 refuse 2 '--channels error: not possible' render cube.vtu -o a.exr --array s --isosurface 3 --channels error
 refuse 2 'there is only exact' render cube.vtu --array s --isosurface 3 --integrator gauss:2
-refuse 2 'needs --blend composite' render cube.vtu --array s --isosurface 3 --blend maximum
+refuse 2 'need --blend composite' render cube.vtu --array s --isosurface 3 --blend maximum
 refuse 2 'exclude each other' render cube.vtu --isosurface 3 --extinction s
 refuse 2 'without surfaces' converge cube.vtu -o report --isosurface 3
 refuse 1 'two isosurfaces' render cube.vtu -o a.png --array s --isosurface 3 --isosurface 3.0
