@@ -298,6 +298,21 @@ TC_INLINE void tc_groups_of_ray(const unsigned on, const TcCoefficients *c, TcGr
   }
 }
 
+/* A group in each lane, one ray after the other. */
+TC_NOINLINE void tc_groups_ray_by_ray(const unsigned on, const TcCoefficients *c, TcGroups *groups, TcMask mask,
+                                      const TcStretch *all) {
+  for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
+    const int l = __builtin_ctz(lanes);
+    const TcStretch ray = {.mask = tc_all(),
+                           .length = tc_set(TC_AT(all->length, l)),
+                           .from = tc_set(TC_AT(all->from, l)),
+                           .to = tc_set(TC_AT(all->to, l)),
+                           .spread_own = on & TC_BOUND ? tc_set(TC_AT(all->spread_own, l)) : tc_set(0),
+                           .spread_range = on & TC_BOUND ? tc_set(TC_AT(all->spread_range, l)) : tc_set(0)};
+    tc_groups_of_ray(on, c, groups, l, &ray);
+  }
+}
+
 TC_INLINE void tc_groups_segment(const unsigned on, const TcGatherJob *job, TcGroups *groups, TcMask mask,
                                  const TcPassage *passage) {
   const TcCoefficients *c = job->coefficients;
@@ -313,16 +328,7 @@ TC_INLINE void tc_groups_segment(const unsigned on, const TcGatherJob *job, TcGr
     all.spread_range = passage->spread;
   }
   if (groups->by_rays) {
-    for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
-      const int l = __builtin_ctz(lanes);
-      const TcStretch ray = {.mask = tc_all(),
-                             .length = tc_set(TC_AT(all.length, l)),
-                             .from = tc_set(TC_AT(all.from, l)),
-                             .to = tc_set(TC_AT(all.to, l)),
-                             .spread_own = on & TC_BOUND ? tc_set(TC_AT(all.spread_own, l)) : tc_set(0),
-                             .spread_range = on & TC_BOUND ? tc_set(TC_AT(all.spread_range, l)) : tc_set(0)};
-      tc_groups_of_ray(on, c, groups, l, &ray);
-    }
+    tc_groups_ray_by_ray(on, c, groups, mask, &all);
   } else {
     tc_groups_by_group(on, c, groups, &all);
   }

@@ -17,10 +17,10 @@ typedef struct TcEmission {
   TcVec block_color[3], block_depth, block_transmittance; /* of the block under way */
   TcVec before;                                           /* optical depth of the finished blocks */
   TcLanePieces piece;                                     /* kept from packet to packet */
-  TcVec moved;     /* with TC_BOUND: what is off by where rays meet faces; single precision: Σ spread */
-  int parts;       /* of the block under way */
-  TcLayers layers; /* with TC_SURFACES */
+  TcVec moved; /* with TC_BOUND: what is off by where rays meet faces; single precision: Σ spread */
+  int parts;   /* of the block under way */
   _Alignas(64) double color[3][TC_LANES], depth[TC_LANES], transmittance[TC_LANES]; /* of the finished blocks */
+  TcLayers layers;                                                                  /* with TC_SURFACES */
 } TcEmission;
 
 TC_INLINE void tc_emission_begin(const TcGatherJob *job, TcEmission *e) {

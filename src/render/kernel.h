@@ -33,7 +33,8 @@ enum {
 
 /* What a frame is made from; the same for all workers. */
 typedef struct TcJob {
-  int kernel; /* TC_KERNEL_… */
+  int kernel;    /* TC_KERNEL_… */
+  bool one_lane; /* only kernels of one lane have it */
   const TcShell *shell;
   const TcRows *values;   /* the scalar */
   const TcPieces *pieces; /* in the volume's units */

@@ -41,15 +41,17 @@ const TcIsaKernels *tc_single_kernels_for(TetcastIsa most) {
   return NULL;
 }
 
-/* The first row of a gatherer that has all of these features, and just this association. */
-static int choose_row(const char *gatherer, unsigned needed) {
+/* The first row of a gatherer that has all of these features, and just this association; whether only kernels of one
+ * lane have it. */
+static int choose_row(const char *gatherer, unsigned needed, bool *one_lane) {
   static const struct {
     const char *gatherer;
     unsigned features;
+    bool one_lane;
   } rows[] = {
-#define KERNEL(name, gatherer, features) {#gatherer, (features)},
-#define KERNEL_DOUBLE                    KERNEL
-#define KERNEL_ONE                       KERNEL
+#define KERNEL(name, gatherer, features)     {#gatherer, (features), false},
+#define KERNEL_DOUBLE                        KERNEL
+#define KERNEL_ONE(name, gatherer, features) {#gatherer, (features), true},
 #include "render/kernels.def"
 #undef KERNEL
 #undef KERNEL_DOUBLE
@@ -58,6 +60,7 @@ static int choose_row(const char *gatherer, unsigned needed) {
   for (int i = 0; i < TC_KERNELS; ++i) {
     if (strcmp(rows[i].gatherer, gatherer) == 0 && (rows[i].features & needed) == needed &&
         (rows[i].features & TC_ASSOCIATIONS) == (needed & TC_ASSOCIATIONS)) {
+      *one_lane = rows[i].one_lane;
       return i;
     }
   }
@@ -74,7 +77,8 @@ static void see_through(const TcRows *values, const TcPieces *pieces, unsigned m
   job->sums = more & TC_BOUND ? 5 : 4;
   job->tolerance = tc_tolerance_begin(pieces, 0);
   const unsigned needed = (pieces->one_color ? 0 : TC_COLORED) | (pieces->scaled ? TC_SCALED : 0) | more;
-  job->kernel = choose_row(job->sampler ? "sampled" : "emission", (job->sampler ? 0 : needed) | association_of(values));
+  job->kernel = choose_row(job->sampler ? "sampled" : "emission", (job->sampler ? 0 : needed) | association_of(values),
+                           &job->one_lane);
 }
 
 void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job) {
@@ -83,7 +87,7 @@ void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job) {
     job->shell = &scene->volume->shell;
     job->coefficients = scene->coefficients;
     job->sums = 3 * scene->coefficients->groups + (bound ? 3 : 2);
-    job->kernel = choose_row("groups", TC_WEIGHTS | TC_CELLS | measured);
+    job->kernel = choose_row("groups", TC_WEIGHTS | TC_CELLS | measured, &job->one_lane);
     return;
   }
   if (scene->blend) { /* of all of the volume: nothing is hidden */
@@ -91,7 +95,7 @@ void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job) {
     job->values = scene->values;
     job->blend = scene->blend;
     job->sums = 2;
-    job->kernel = choose_row("value", association_of(scene->values));
+    job->kernel = choose_row("value", association_of(scene->values), &job->one_lane);
     return;
   }
   see_through(scene->values, &scene->prepared->scaled->pieces, measured | (job->surfaces ? TC_SURFACES : 0), job);
@@ -391,7 +395,7 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   job->to_the_end =
       tc_frame_channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH) || tc_frame_channel(frame, TETCAST_CHANNEL_PATH_LENGTH);
   tc_job_of_scene(scene, measured, job);
-  const bool one_by_one = sampler || scene->volume->traversal == TETCAST_TRAVERSAL_FACES;
+  const bool one_by_one = job->one_lane || scene->volume->traversal == TETCAST_TRAVERSAL_FACES;
   render.bounded = measured;
   render.plain = job->pieces && frame->type == TETCAST_TYPE_FLOAT64 && !measured;
   render.kernels = tc_kernels_for(one_by_one ? TETCAST_ISA_SCALAR : desc->isa);

@@ -15,9 +15,6 @@
 
 typedef struct TcPacket {
   TcRays rays;
-  /* If there are surfaces: the rays' directions, unit vectors; the depths at which they meet slices. */
-  TcWide along[3];
-  TcVec slice[TETCAST_MAX_SLICES];
   /* The face where each ray is: its vertices, counter-clockwise around the ray, each with the cross product of the two
    * others, > 0. */
   TcLanePoints v[3];
@@ -45,6 +42,10 @@ typedef struct TcPacket {
   int64_t steps, next[TC_LANES];
   TcHits *hits; /* [TC_LANES] */
   int64_t destination[TC_LANES];
+
+  /* If there are surfaces: the rays' directions, unit vectors; the depths at which they meet slices. */
+  TcWide along[3];
+  TcVec slice[TETCAST_MAX_SLICES];
 } TcPacket;
 
 /* The lanes of `mask` rest. */

@@ -31,12 +31,13 @@ static inline bool kernel_runs(int kernel, const TetcastVolume *volume) {
 typedef struct KernelRow {
   const char *name, *gatherer;
   unsigned features;
+  bool one_lane; /* only the first of all_kernels has it */
 } KernelRow;
 
 static const KernelRow kernel_rows[] = {
-#define KERNEL(name, gatherer, features) {#name, #gatherer, (features)},
-#define KERNEL_DOUBLE                    KERNEL
-#define KERNEL_ONE                       KERNEL
+#define KERNEL(name, gatherer, features)     {#name, #gatherer, (features), false},
+#define KERNEL_DOUBLE                        KERNEL
+#define KERNEL_ONE(name, gatherer, features) {#name, #gatherer, (features), true},
 #include "render/kernels.def"
 #undef KERNEL
 #undef KERNEL_DOUBLE
