@@ -66,10 +66,10 @@ TETCAST_API TetcastBlend tetcast_scene_blend(const TetcastScene *scene);
 /* Clips what is seen, of whatever kind and in every channel, to what lies in all of `half_spaces` [count], in place of
  * former ones; they are copied. 0 and NULL: all is seen, as in a new scene. Cells are not cut but rays are: each counts
  * from where it enters the last half-space to where it leaves the first, so pictures are as exact as without, and
- * nothing else takes longer; what rounding does to these two places is part of TETCAST_CHANNEL_ERROR. A ray in the plane
- * itself is kept. Where nothing is left, pictures are empty. The default camera and presets go by the whole mesh. A
- * normal of length 0, or a number that isn't finite, is TETCAST_ERROR_ARGUMENT. Must not run while this scene renders. On
- * error the scene keeps what it had. */
+ * nothing else takes longer; what rounding does to these two places is part of TETCAST_CHANNEL_ERROR. A ray in the
+ * plane itself is kept. Where nothing is left, pictures are empty. The default camera and presets go by the whole mesh.
+ * A normal of length 0, or a number that isn't finite, is TETCAST_ERROR_ARGUMENT. Must not run while this scene
+ * renders. On error the scene keeps what it had. */
 TETCAST_API TetcastStatus tetcast_scene_set_clip(TetcastScene *scene, const TetcastHalfSpace *half_spaces, int count);
 
 /* Extinction κ and emission j as they are, for one or several groups (of wavelength, of energy, …). Along a ray, each
@@ -115,12 +115,12 @@ typedef struct TetcastRenderDesc {
                      * costs allows it: with a point field and a transfer function without jumps, AVX2 or AVX-512, from
                      * 1e-3 or 1e-4 on, depending on how steep both are. The bound takes it that cells don't overlap:
                      * where a mesh folds over itself, single precision may be further off. */
-  const TetcastArray *stop; /* [height · width], float or double, rows from the top: the distance from its start at which
-                             * every ray of the pixel ends, in the mesh's unit of length: from the eye, or, of an
+  const TetcastArray *stop; /* [height · width], float or double, rows from the top: the distance from its start at
+                             * which every ray of the pixel ends, in the mesh's unit of length: from the eye, or, of an
                              * orthographic camera, from the plane through it, along the ray, not along the direction of
                              * view. So a picture is made that goes in front of opaque things of other origin. Infinity:
-                             * it doesn't end; 0 or less: it sees nothing; NaN is TETCAST_ERROR_ARGUMENT. NULL (default):
-                             * none ends */
+                             * it doesn't end; 0 or less: it sees nothing; NaN is TETCAST_ERROR_ARGUMENT. NULL
+                             * (default): none ends */
   TetcastProgress progress;
 } TetcastRenderDesc;
 

@@ -31,6 +31,9 @@ typedef enum OptionId {
   OPTION_EMISSION,
   OPTION_GROUPS,
   OPTION_BLEND,
+  OPTION_CLIP,
+  OPTION_CLIP_BOX,
+  OPTION_STOP_DEPTH,
   OPTION_EYE,
   OPTION_TARGET,
   OPTION_UP,
@@ -67,10 +70,13 @@ typedef struct RenderOptions {
   RenderCommand command;
   /* NULL unless given */
   char *input, *output, *array, *block, *time, *transfer, *preset, *extinction, *emission, *integrator, *channels,
-      *stats, *scene, *save_scene;
+      *stats, *scene, *save_scene, *stop_depth;
   char **inputs; /* [input_count] of several files, the steps of a series; input is the first. NULL: one file */
   int input_count;
   json_t *transfer_object; /* of a scene file; instead of transfer */
+  TetcastHalfSpace *clip;  /* [clip_count] */
+  int clip_count, clip_capacity;
+  double clip_box[6]; /* x0, x1, y0, … */
   double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], tolerance, threads, repeat;
   double merge_tolerance; /* negative unless given */
   RangeKind range_kind;   /* RANGE_FIXED: options->range */
@@ -85,7 +91,7 @@ typedef struct RenderOptions {
 typedef struct OptionValue {
   const char *text; /* NULL: numbers */
   int count;
-  double numbers[4];
+  double numbers[6];
 } OptionValue;
 
 RenderOptions render_options_default(RenderCommand command);
