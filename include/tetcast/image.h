@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Writing images through OpenImageIO: target tetcast::openimageio, library libtetcast-openimageio. */
+/* Writing images, and reading depths, through OpenImageIO: target tetcast::openimageio, library libtetcast-openimageio.
+ */
 #ifndef TETCAST_IMAGE_H
 #define TETCAST_IMAGE_H
 
@@ -53,6 +54,14 @@ TETCAST_API TetcastStatus tetcast_image_write(TetcastContext *context, const cha
 /* Whether `path` could be written with `desc` (NULL: default): extension known, pixel type possible, folder there and
  * writable. For a check before long work; the same messages as writing. */
 TETCAST_API TetcastStatus tetcast_image_check(TetcastContext *context, const char *path, const TetcastImageDesc *desc);
+
+/* Reads the distances at which a picture's rays stop (TetcastRenderDesc.stop) into `depth` [height][width], rows from
+ * the top: of an image with floating-point pixels, such as .exr and .tif, the channel named Z, else the first whose
+ * name ends with .Z, else the only or the first one, with a warning if it is one of several. What has no such pixels,
+ * is deep, or has another size: TETCAST_ERROR_DATA; what can't be read: TETCAST_ERROR_IO. Numbers are handed on as they
+ * are, NaN and infinity among them. */
+TETCAST_API TetcastStatus tetcast_image_read_depth(TetcastContext *context, const char *path, int64_t width,
+                                                   int64_t height, double *depth);
 
 #ifdef __cplusplus
 }

@@ -39,7 +39,8 @@
 #define CLI_IMAGE_FUNCTIONS(X)                                                                                         \
   X(TetcastImageDesc, image_desc_default, (void))                                                                      \
   X(TetcastStatus, image_write, (TetcastContext *, const char *, const TetcastFrame *, const TetcastImageDesc *))      \
-  X(TetcastStatus, image_check, (TetcastContext *, const char *, const TetcastImageDesc *))
+  X(TetcastStatus, image_check, (TetcastContext *, const char *, const TetcastImageDesc *))                            \
+  X(TetcastStatus, image_read_depth, (TetcastContext *, const char *, int64_t, int64_t, double *))
 
 /* The functions under the adapter's names without "tetcast_", e.g. vtk->dataset_read(…). */
 #define CLI_MEMBER(result, name, parameters) result(*name) parameters;

@@ -37,11 +37,30 @@ static bool coordinate(const Cell *cell, int i, const long double direction[3], 
   return volume != 0;
 }
 
-/* Clips the ray against the cell's four half-spaces. */
-static bool clip(const Cell *cell, const long double direction[3], BruteSpan *span) {
+/* What of a ray lies in all of these half-spaces; nothing: the first number is not below the second. */
+static void interval_of(const TetcastHalfSpace *half_spaces, int count, const long double origin[3],
+                        const long double direction[3], long double interval[2]) {
+  interval[0] = 0;
+  interval[1] = INFINITY;
+  for (int i = 0; i < count; i++) {
+    long double normal[3];
+    for (int k = 0; k < 3; k++)
+      normal[k] = half_spaces[i].normal[k];
+    const long double inside = dot(normal, origin) - half_spaces[i].offset, slope = dot(normal, direction);
+    if (slope > 0)
+      interval[0] = fmaxl(interval[0], -inside / slope);
+    else if (slope < 0)
+      interval[1] = fminl(interval[1], -inside / slope);
+    else if (inside < 0)
+      interval[1] = -1;
+  }
+}
+
+/* Clips the interval of the ray against the cell's four half-spaces. */
+static bool clip(const Cell *cell, const long double direction[3], const long double interval[2], BruteSpan *span) {
   long double at[4][2];
-  span->t[0] = 0;
-  span->t[1] = INFINITY;
+  span->t[0] = interval[0];
+  span->t[1] = interval[1];
   for (int i = 0; i < 4; i++) {
     if (!coordinate(cell, i, direction, at[i]))
       return false;
@@ -151,14 +170,14 @@ static long double offset_of(const TetcastMesh *mesh, const ReferenceRay *line) 
 
 /* Casts the ray and those beside it against one cell. */
 static void cast(BruteRay *ray, const Cell *cell, bool of_cells, const long double direction[3],
-                 long double offsets[BRUTE_RAYS][3]) {
+                 long double offsets[BRUTE_RAYS][3], long double intervals[BRUTE_RAYS][2]) {
   for (int r = 0; r < BRUTE_RAYS; r++) {
     Cell moved = *cell;
     for (int i = 0; i < 4; i++)
       for (int k = 0; k < 3; k++)
         moved.corner[i][k] -= offsets[r][k];
     BruteSpan span;
-    if (!clip(&moved, direction, &span))
+    if (!clip(&moved, direction, intervals[r], &span))
       continue;
     if (of_cells) /* to the last bit: it may be the value of a step */
       span.s[0] = span.s[1] = cell->value[0];
@@ -168,18 +187,24 @@ static void cast(BruteRay *ray, const Cell *cell, bool of_cells, const long doub
   }
 }
 
-void brute_trace(BruteRay *ray, const TetcastMesh *mesh, const TetcastField *field, const TetcastCamera *camera,
-                 int64_t width, int64_t height, int64_t pixel) {
+void brute_trace(BruteRay *ray, const TetcastMesh *mesh, const TetcastField *field, const TetcastHalfSpace *half_spaces,
+                 int half_space_count, const TetcastCamera *camera, int64_t width, int64_t height, int64_t pixel) {
   const ReferenceRay line = reference_ray(camera, width, height, pixel % width, pixel / width);
   const bool of_cells = tetcast_field_association(field) == TETCAST_CELL;
   const int64_t count = tetcast_mesh_tetrahedron_count(mesh);
   const long double offset = offset_of(mesh, &line);
-  long double across[2][3], offsets[BRUTE_RAYS][3] = {{0}};
+  long double across[2][3], offsets[BRUTE_RAYS][3] = {{0}}, intervals[BRUTE_RAYS][2];
   directions_across(line.direction, across);
   for (int r = 1; r < BRUTE_RAYS; r++) { /* around it, in no direction that meshes have faces in */
     const long double angle = 0.7L + 1.5707963267948966L * r;
     for (int k = 0; k < 3; k++)
       offsets[r][k] = offset * (cosl(angle) * across[0][k] + sinl(angle) * across[1][k]);
+  }
+  for (int r = 0; r < BRUTE_RAYS; r++) {
+    long double origin[3];
+    for (int k = 0; k < 3; k++)
+      origin[k] = line.origin[k] + offsets[r][k];
+    interval_of(half_spaces, half_space_count, origin, line.direction, intervals[r]);
   }
   *ray = (BruteRay){.pixel = pixel};
   for (int64_t number = 0; number < count; number++) {
@@ -192,7 +217,7 @@ void brute_trace(BruteRay *ray, const TetcastMesh *mesh, const TetcastField *fie
         cell.corner[i][k] = position[k] - line.origin[k];
     }
     if (!beside(&cell, across, 2 * offset) && load_values(&cell, field, number))
-      cast(ray, &cell, of_cells, line.direction, offsets);
+      cast(ray, &cell, of_cells, line.direction, offsets, intervals);
   }
   for (int r = 0; r < BRUTE_RAYS; r++)
     put_in_order(&ray->cast[r]);

@@ -29,9 +29,9 @@ typedef struct BruteRay {
   BruteSpans cast[BRUTE_RAYS];
 } BruteRay;
 
-/* Finds the spans of the ray through the middle of a pixel. */
-void brute_trace(BruteRay *ray, const TetcastMesh *mesh, const TetcastField *field, const TetcastCamera *camera,
-                 int64_t width, int64_t height, int64_t pixel);
+/* Finds the spans of the ray through the middle of a pixel, as far as it lies in the half-spaces. */
+void brute_trace(BruteRay *ray, const TetcastMesh *mesh, const TetcastField *field, const TetcastHalfSpace *half_spaces,
+                 int half_space_count, const TetcastCamera *camera, int64_t width, int64_t height, int64_t pixel);
 
 /* What is known of a ray's premultiplied colour and opacity: each lies between two numbers. */
 typedef struct BruteLight {

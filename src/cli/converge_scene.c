@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli.h"
+#include "clip.h"
 #include "converge.h"
 #include "progress.h"
 
@@ -152,11 +153,13 @@ static TetcastStatus trace_reference(Converge *converge, const Pictures *picture
   converge->rays = cli_allocate(sizeof *converge->rays * (size_t)rays);
   const TetcastProgress progress = converge_progress(converge, check_weight(converge));
   bool going = true;
+  int clip_count;
+  TetcastHalfSpace *clip = clip_half_spaces(&converge->options, &clip_count);
   converge->rays_blank = shown_count > 0;
   for (int i = 0; i < 4 * rays && converge->ray_count < rays && going; i++) {
     BruteRay *ray = &converge->rays[converge->ray_count];
     BruteLight light;
-    brute_trace(ray, stage->mesh, stage->field, &stage->camera, pictures->width, pictures->height,
+    brute_trace(ray, stage->mesh, stage->field, clip, clip_count, &stage->camera, pictures->width, pictures->height,
                 pixel_of(i, shown, shown_count, count));
     brute_shade(ray, stage->transfer_function, &light);
     if (light.spread > CONVERGE_TRUST) {
@@ -170,6 +173,7 @@ static TetcastStatus trace_reference(Converge *converge, const Pictures *picture
     going = progress.function(progress.user, fmin(1, (double)converge->ray_count / rays));
   }
   free(shown);
+  free(clip);
   return going ? TETCAST_OK : TETCAST_ERROR_CANCELLED;
 }
 

@@ -19,6 +19,7 @@ void fileset_add_options(FileSet *set, const RenderOptions *options) {
     fileset_add(set, "the input", options->inputs[i], false);
   fileset_add(set, "--scene", options->scene, false);
   fileset_add(set, "--transfer", options->transfer_object ? NULL : options->transfer, false);
+  fileset_add(set, "--stop-depth", options->stop_depth, false);
   fileset_add(set, "--stats", options->stats, true);
   fileset_add(set, "--save-scene", options->save_scene, true);
 }

@@ -101,7 +101,32 @@ static void check_brightness(const Run *run) {
                 (double)brightest);
 }
 
+int picture_read_stop(Run *run) {
+  const RenderOptions *options = &run->options;
+  const int64_t width = (int64_t)options->size[0], height = (int64_t)options->size[1];
+  run->stop = cli_allocate(sizeof *run->stop * (size_t)(width * height));
+  const TetcastStatus status =
+      run->image->image_read_depth(run->stage.context, options->stop_depth, width, height, run->stop);
+  if (status != TETCAST_OK)
+    return cli_failed(status);
+  for (int64_t i = 0; i < width * height; i++)
+    if (isnan(run->stop[i])) {
+      cli_error("--stop-depth '%s': pixel (%lld, %lld) is NaN; a ray that doesn't stop has an infinite depth",
+                options->stop_depth, (long long)(i % width), (long long)(i / width));
+      return CLI_FAILED;
+    }
+  return cli_verdict(CLI_DONE);
+}
+
+TetcastArray picture_stop(const Run *run) {
+  return (TetcastArray){.data = run->stop,
+                        .type = TETCAST_TYPE_FLOAT64,
+                        .count = (int64_t)run->options.size[0] * (int64_t)run->options.size[1]};
+}
+
 int picture_render(Run *run) {
+  if (run->options.stop_depth)
+    picture_await_image(run); /* which reads it */
   RunStats *stats = &run->stats;
   stats->threads = tetcast_context_threads(run->stage.context);
   stats->repeats = (int)run->options.repeat;
@@ -114,9 +139,11 @@ int picture_render(Run *run) {
   stats->blend = render_option_choice(OPTION_BLEND, (int)render_options_blend(&run->options));
   if (run->options.integrator)
     render_option_integrator(run->options.integrator, &desc.integrator, &desc.integrator_n);
+  const TetcastArray stop = picture_stop(run);
   for (int i = 0; i < stats->repeats; i++) {
     const double start = cli_seconds();
     desc.progress = cli_progress("rendering");
+    desc.stop = run->stop ? &stop : NULL;
     TetcastStatus status = tetcast_scene_render(run->stage.scene, &run->stage.camera, &desc,
                                                 run->values ? run->values : run->frame, &stats->render);
     if (status == TETCAST_OK && run->values)

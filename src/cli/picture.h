@@ -16,6 +16,7 @@ typedef struct Run {
   RenderOptions options;
   const CliImage *image;
   TetcastImageDesc image_desc;
+  double *stop; /* [height][width], of --stop-depth; NULL: none */
   pthread_t image_thread;
   sem_t image_begun;
   bool image_pending; /* image_thread still has to be waited for */
@@ -26,9 +27,13 @@ typedef struct Run {
 } Run;
 
 /* Each step returns an exit code. */
+int picture_read_stop(Run *run); /* what --stop-depth names, with run->image at hand */
 int picture_create_frame(Run *run);
 int picture_render(Run *run);
 int picture_write(Run *run, const char *path);
+
+/* run->stop as the library takes it. */
+TetcastArray picture_stop(const Run *run);
 
 /* The name of the input with .png, in the current folder; for free(). */
 char *picture_default_output(const char *input);

@@ -70,7 +70,9 @@ static int check_image(Run *run) {
   cli_interrupt_hold(true); /* the check puts a file in a folder for a moment */
   const TetcastStatus status = run->image->image_check(run->stage.context, run->options.output, &run->image_desc);
   cli_interrupt_hold(false);
-  return status == TETCAST_OK ? cli_verdict(CLI_DONE) : cli_failed(status);
+  if (status != TETCAST_OK)
+    return cli_failed(status);
+  return run->options.stop_depth ? picture_read_stop(run) : cli_verdict(CLI_DONE);
 }
 
 /* What the command ends with. */
@@ -174,6 +176,7 @@ int tetcast_cli_render(int argc, char **argv) {
   tetcast_frame_destroy(&run.values);
   tetcast_frame_destroy(&run.frame);
   stage_release(&run.stage);
+  free(run.stop);
   free(run.stats.render_seconds);
   render_options_release(&run.options);
   return outcome(code);

@@ -78,6 +78,11 @@ const RenderRow render_table[OPTION_COUNT] = {
                                  "10000"},
     [OPTION_LIGHT] = {"light", KIND_LIST, AT(lights), .most = TETCAST_MAX_LIGHTS,
                       .form = "expected x,y,z[:COLOUR]: where it comes from, not 0,0,0, and a name, #rrggbb or r,g,b"},
+    [OPTION_CLIP] = {"clip", KIND_NUMBERS, AT(clip), 4, 4, -DBL_MAX, DBL_MAX,
+                     .form = "expected four numbers nx,ny,nz,d, of which nx,ny,nz are not all zero"},
+    [OPTION_CLIP_BOX] = {"clip-box", KIND_NUMBERS, AT(clip_box), 6, 6, -DBL_MAX, DBL_MAX,
+                         .form = "expected six numbers x0,x1,y0,y1,z0,z1, the first of each pair not above the second"},
+    [OPTION_STOP_DEPTH] = {"stop-depth", KIND_PATH, AT(stop_depth), .only = COMMAND_RENDER, .form = "expected a path"},
     [OPTION_EYE] = {"eye", KIND_NUMBERS, AT(eye), 3, 3, -DBL_MAX, DBL_MAX, .form = "expected three numbers x,y,z"},
     [OPTION_TARGET] = {"target", KIND_NUMBERS, AT(target), 3, 3, -DBL_MAX, DBL_MAX,
                        .form = "expected three numbers x,y,z"},
@@ -163,6 +168,7 @@ void render_options_release(RenderOptions *options) {
     if (render_option_is_text((OptionId)id))
       free(*(char **)((char *)options + render_table[id].at));
   json_decref(options->transfer_object);
+  free(options->clip);
   release_inputs(options);
 }
 
@@ -212,6 +218,8 @@ const char *render_options_claim(RenderOptions *options, OptionId id) {
       return render_table[other].name;
   if (render_option_is_list(id) && !(options->source & BIT(id))) /* of another source */
     clear_list((TextList *)((char *)options + render_table[id].at));
+  if (id == OPTION_CLIP && !(options->source & BIT(id)))
+    options->clip_count = 0; /* those of another source are replaced */
   options->given = (options->given & ~render_table[id].excludes) | BIT(id);
   options->source |= BIT(id);
   return NULL;
@@ -331,7 +339,8 @@ static const char *set_numbers(OptionId id, void *at, const OptionValue *value) 
       return render_table[id].form;
   if ((id == OPTION_SIZE && numbers[0] * numbers[1] > 0x1p30) || (id == OPTION_RANGE && numbers[0] > numbers[1]) ||
       (id == OPTION_MATERIAL && numbers[3] < 1) ||
-      (id == OPTION_UP && numbers[0] == 0 && numbers[1] == 0 && numbers[2] == 0))
+      (id == OPTION_UP && numbers[0] == 0 && numbers[1] == 0 && numbers[2] == 0) ||
+      (id == OPTION_CLIP_BOX && (numbers[0] > numbers[1] || numbers[2] > numbers[3] || numbers[4] > numbers[5])))
     return render_table[id].form;
   memcpy(at, numbers, sizeof(double) * (size_t)value->count);
   if (id == OPTION_BACKGROUND && value->count == 3)
@@ -396,12 +405,24 @@ static const char *set_range(RenderOptions *options, const OptionValue *value) {
   return reason;
 }
 
+/* One half-space more. */
+static const char *add_half_space(RenderOptions *options, const OptionValue *value) {
+  const double *n = value->numbers;
+  if (value->text || value->count != 4 || (n[0] == 0 && n[1] == 0 && n[2] == 0))
+    return render_table[OPTION_CLIP].form;
+  options->clip = cli_grow(options->clip, options->clip_count, &options->clip_capacity, sizeof *options->clip);
+  options->clip[options->clip_count++] = (TetcastHalfSpace){.normal = {n[0], n[1], n[2]}, .offset = n[3]};
+  return NULL;
+}
+
 const char *render_options_set(RenderOptions *options, OptionId id, const OptionValue *value) {
   void *at = (char *)options + render_table[id].at;
   if (id == OPTION_RANGE)
     return set_range(options, value);
   if (id == OPTION_BACKGROUND)
     return set_color(id, at, value);
+  if (id == OPTION_CLIP)
+    return add_half_space(options, value);
   switch (render_table[id].kind) {
   case KIND_NUMBERS:
   case KIND_INTEGERS:

@@ -38,6 +38,9 @@ typedef enum OptionId {
   OPTION_NORMALS,
   OPTION_MATERIAL,
   OPTION_LIGHT,
+  OPTION_CLIP,
+  OPTION_CLIP_BOX,
+  OPTION_STOP_DEPTH,
   OPTION_EYE,
   OPTION_TARGET,
   OPTION_UP,
@@ -80,10 +83,13 @@ typedef struct RenderOptions {
   RenderCommand command;
   /* NULL unless given */
   char *input, *output, *array, *block, *time, *transfer, *preset, *extinction, *emission, *integrator, *channels,
-      *surface, *stats, *scene, *save_scene;
+      *surface, *stats, *scene, *save_scene, *stop_depth;
   char **inputs; /* [input_count] of several files, the steps of a series; input is the first. NULL: one file */
   int input_count;
   json_t *transfer_object; /* of a scene file; instead of transfer */
+  TetcastHalfSpace *clip;  /* [clip_count] */
+  int clip_count, clip_capacity;
+  double clip_box[6]; /* x0, x1, y0, … */
   double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], tolerance, threads, repeat;
   double material[4];
   TextList isosurfaces, slices, lights;
@@ -100,7 +106,7 @@ typedef struct RenderOptions {
 typedef struct OptionValue {
   const char *text; /* NULL: numbers */
   int count;
-  double numbers[4];
+  double numbers[6];
 } OptionValue;
 
 RenderOptions render_options_default(RenderCommand command);

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "cli.h"
+#include "clip.h"
 #include "file.h"
 #include "json.h"
 
@@ -42,7 +43,7 @@ static bool set_value(RenderOptions *options, OptionId id, const char *key, cons
     value.count = 1;
     value.numbers[0] = json_is_true(json);
   } else if (!value.text) {
-    value.count = cli_json_numbers(json, 4, value.numbers);
+    value.count = cli_json_numbers(json, 6, value.numbers);
   }
 
   const char *reason = NULL;
@@ -58,6 +59,8 @@ static bool set_value(RenderOptions *options, OptionId id, const char *key, cons
     }
   } else if (id == OPTION_INPUT && json_is_array(json)) {
     reason = set_inputs(options, json);
+  } else if (id == OPTION_CLIP) {
+    reason = clip_add_all(options, json);
   } else {
     reason = render_options_set(options, id, &value);
   }
@@ -187,6 +190,15 @@ static json_t *size_array(const double size[2]) {
   return array;
 }
 
+/* A path from the scene's folder; NULL: it is not UTF-8. */
+static json_t *relative_path(const RenderOptions *options, const char *path) {
+  char *folder = cli_path_folder(options->save_scene), *relative = cli_path_relative(folder, path);
+  json_t *text = json_string(relative);
+  free(relative);
+  free(folder);
+  return text;
+}
+
 /* The path of the input, or of each of several, from the scene's folder; NULL: one is not UTF-8. */
 static json_t *input_value(const RenderOptions *options) {
   char *folder = cli_path_folder(options->save_scene);
@@ -245,6 +257,8 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
     failed |= json_object_set_new(scene, "emission", json_string(options->emission));
   if (array)
     failed |= json_object_set_new(scene, "array", json_string(array));
+  if (options->stop_depth)
+    failed |= json_object_set_new(scene, "stop_depth", relative_path(options, options->stop_depth));
   if (options->block)
     failed |= json_object_set_new(scene, "block", json_string(options->block));
   if (options->time) /* "t=0.5", "all" */
@@ -258,7 +272,7 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
   if (options->subdivide > 0)
     json_object_set_new(scene, "subdivide", json_integer((json_int_t)options->subdivide));
   if (failed) {
-    cli_error("cannot write '%s': the name of the input, the output, the array or the block is not UTF-8",
+    cli_error("cannot write '%s': the name of the input, the output, another file, the array or the block is not UTF-8",
               options->save_scene);
     json_decref(scene);
     return false;
@@ -277,6 +291,7 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
   if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
     json_object_set_new(scene, "blend", json_string(render_option_choice(OPTION_BLEND, options->blend)));
   write_surfaces(scene, options);
+  clip_write(options, scene);
   json_object_set_new(scene, "camera", camera_object(camera));
   json_object_set_new(scene, "size", size_array(options->size));
   json_object_set_new(scene, "samples", json_integer((json_int_t)options->samples));

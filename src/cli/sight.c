@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli.h"
+#include "clip.h"
 
 /* A pixel shows something from the first level of eight bits on, and is opaque from the last. */
 static const double visible = 1.0 / 255, opaque = 254.5 / 255;
@@ -79,23 +80,28 @@ static TetcastScene *uniform_scene(const Run *run, double extinction) {
     status = tetcast_scene_share_field(scene, run->stage.scene);
   if (status == TETCAST_OK)
     status = tetcast_scene_set_transfer_function(scene, transfer_function);
+  if (status == TETCAST_OK)
+    status = clip_scene(scene, &run->options);
   tetcast_transfer_function_destroy(&transfer_function);
   if (status != TETCAST_OK)
     tetcast_scene_destroy(&scene);
   return scene;
 }
 
-/* Renders a small picture; the largest alpha in it, or path length in the mesh if `lengths` says so. NaN: it failed. */
-static double largest_of(const Run *run, const TetcastScene *scene, const TetcastCamera *camera, int64_t width,
-                         int64_t height, bool lengths) {
+/* Renders a picture, whose rays may stop; the largest alpha in it, or path length in the mesh if `lengths` says so.
+ * NaN: it failed. */
+static double largest_before(const Run *run, const TetcastScene *scene, const TetcastCamera *camera, int64_t width,
+                             int64_t height, bool lengths, const TetcastArray *stop) {
   TetcastFrameDesc desc = tetcast_frame_desc_default();
   desc.width = width;
   desc.height = height;
   desc.channels = lengths ? TETCAST_CHANNEL_PATH_LENGTH : 0;
+  TetcastRenderDesc render = tetcast_render_desc_default();
+  render.stop = stop;
   TetcastFrame *frame = NULL;
   TetcastStatus status = tetcast_frame_create(run->stage.context, &desc, &frame);
   if (status == TETCAST_OK)
-    status = tetcast_scene_render(scene, camera, NULL, frame, NULL);
+    status = tetcast_scene_render(scene, camera, &render, frame, NULL);
   const double *values = NULL;
   if (status == TETCAST_OK)
     values = lengths ? tetcast_frame_channel(frame, TETCAST_CHANNEL_PATH_LENGTH) : tetcast_frame_pixels(frame);
@@ -104,6 +110,11 @@ static double largest_of(const Run *run, const TetcastScene *scene, const Tetcas
     largest = fmax(largest, lengths ? values[i] : values[4 * i + 3]);
   tetcast_frame_destroy(&frame);
   return largest;
+}
+
+static double largest_of(const Run *run, const TetcastScene *scene, const TetcastCamera *camera, int64_t width,
+                         int64_t height, bool lengths) {
+  return largest_before(run, scene, camera, width, height, lengths, NULL);
 }
 
 /* Whether rays of the picture's camera, or another, meet anything, in a picture of the same shape with 256 pixels a
@@ -238,17 +249,38 @@ static bool meets_matter(const Probe *probe) {
   return result;
 }
 
+/* Whether there would be something to see without the clip. */
+static bool is_clipped_away(const Probe *probe, TetcastScene *scene) {
+  const RenderOptions *options = &probe->run->options;
+  if (!render_options_given(options, OPTION_CLIP) && !render_options_given(options, OPTION_CLIP_BOX))
+    return false;
+  bool result = tetcast_scene_set_clip(scene, NULL, 0) == TETCAST_OK && meets(probe, scene, &probe->run->stage.camera);
+  return clip_scene(scene, options) == TETCAST_OK && result;
+}
+
+/* Whether all rays stop before they meet anything. */
+static bool is_stopped(const Probe *probe, const TetcastScene *scene) {
+  const Run *run = probe->run;
+  const TetcastArray stop = picture_stop(run);
+  return run->stop && largest_before(run, scene, &run->stage.camera, (int64_t)run->options.size[0],
+                                     (int64_t)run->options.size[1], !probe->uniform, &stop) == 0;
+}
+
 static char *explain_blank(const Probe *probe, const Look *look) {
   const Run *run = probe->run;
   const TetcastVolumeInfo *info = &run->stage.info;
-  const TetcastScene *scene = probe->uniform ? probe->uniform : run->stage.scene;
+  TetcastScene *scene = probe->uniform ? probe->uniform : run->stage.scene;
   const char *of = run->stage.array ? " of array " : "", *array = run->stage.array ? run->stage.array : "";
   if (!meets(probe, scene, &run->stage.camera)) {
+    if (is_clipped_away(probe, scene))
+      return cli_duplicate("the clip leaves nothing of what the camera sees");
     const TetcastCamera whole = tetcast_camera_default(info->bounds, run->options.size[0] / run->options.size[1]);
     if (run->stage.nonfinite > 0 && !meets(probe, scene, &whole))
       return cli_print("all cells are transparent, as they touch values%s%s that are NaN or infinite", of, array);
     return cli_duplicate(explain_camera(run));
   }
+  if (is_stopped(probe, scene))
+    return cli_duplicate("what is there lies beyond the depths of --stop-depth");
   if (!probe->uniform)
     return cli_print(
         "what the camera sees has no extinction and no emission to speak of: alpha is %.2g at most, radiance %.2g",

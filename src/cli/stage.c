@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli.h"
+#include "clip.h"
 #include "progress.h"
 #include "surfaces.h"
 #include "transfer_file.h"
@@ -272,6 +273,8 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
                           : coefficients_set(stage->scene, options, &stage->coefficients);
   if (status == TETCAST_OK)
     status = tetcast_scene_set_blend(stage->scene, render_options_blend(options));
+  if (status == TETCAST_OK)
+    status = clip_scene(stage->scene, options);
   if (status != TETCAST_OK)
     return cli_failed(status);
   tetcast_volume_info(stage->volume, &stage->info);

@@ -262,7 +262,9 @@ void add_clip(Random &random, Case &c, double size, const Point &middle) {
       n = random.between(-1, 1);
     const int axis = random.below(8);
     for (int k = 0; k < 3 && axis < 3; k++)
-      normal[k] = k == axis ? (random.chance(0.5) ? 1 : -1) : random.chance(0.5) ? 0 : normal[k] * random.power(-17, -1);
+      normal[k] = k == axis            ? (random.chance(0.5) ? 1 : -1)
+                  : random.chance(0.5) ? 0
+                                       : normal[k] * random.power(-17, -1);
     if (axis == 3) { /* perpendicular to the view, but for a little */
       double forward[3], along = 0, square = 0;
       for (size_t k = 0; k < 3; k++)

@@ -42,7 +42,7 @@ struct Scene {
   Transfer transfer;
   Camera camera;
   int64_t width = 0, height = 0;
-  int64_t samples = 1; /* rays in a row of a pixel: the square root of the scene file's number */
+  int64_t samples = 1;                     /* rays in a row of a pixel: the square root of the scene file's number */
   std::vector<std::array<double, 4>> clip; /* normals n and offsets d: what has n·x >= d for all of them is seen */
   std::vector<double> stop;                /* of each pixel: where its rays end; none: nowhere */
 };
