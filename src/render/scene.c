@@ -13,12 +13,13 @@ TetcastStatus tc_scene_create(TetcastContext *context, const TetcastVolume *volu
     return TETCAST_ERROR_MEMORY;
   }
   memset(prepared, 0, sizeof *prepared);
-  pthread_mutex_init(&prepared->mutex, NULL); /* which can't fail with default attributes */
+  pthread_mutex_init(&prepared->mutex, NULL); /* with default attributes this can't fail */
   *scene = (TetcastScene){.context = context, .volume = volume, .prepared = prepared};
   *out = scene;
   return TETCAST_OK;
 }
 
+/* Frees what was prepared for the field and the transfer function, as one of them changes. */
 static void forget(TcPrepared *prepared) {
   tc_shell_clear(&prepared->shell);
   tc_transfer_destroy(prepared->scaled);
@@ -26,8 +27,8 @@ static void forget(TcPrepared *prepared) {
   prepared->ready = false;
 }
 
-/* Calls for one scene may come at the same time: one of them does the work. None is under way that uses what is
- * replaced, as neither field nor transfer function change while the scene renders. */
+/* Several threads may call this for one scene at the same time: the first does the work, the others wait for it. What
+ * is freed here is not in use, as neither field nor transfer function may change while the scene renders. */
 TetcastStatus tc_scene_prepare(const TetcastScene *scene) {
   TcPrepared *prepared = scene->prepared;
   TetcastStatus status = TETCAST_OK;
@@ -67,6 +68,7 @@ void tc_scene_destroy(TetcastScene *scene) {
   tc_release(scene->context, scene);
 }
 
+/* Makes `rows` the scene's scalar, and takes over the caller's reference to them. */
 static void bind(TetcastScene *scene, TcRows *rows) {
   forget(scene->prepared);
   tc_rows_release(scene->values);
@@ -86,7 +88,8 @@ void tc_scene_share_field(TetcastScene *scene, const TetcastScene *other) {
   bind(scene, other->values);
 }
 
-/* One of the two, or neither. */
+/* Makes a transfer function or coefficients the scene's own, in place of what it had. At most one of the two is given,
+ * the other is NULL. */
 static void replace(TetcastScene *scene, TetcastTransferFunction *transfer, TcCoefficients *coefficients) {
   forget(scene->prepared);
   tc_transfer_destroy(scene->transfer);

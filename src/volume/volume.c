@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "mesh/order.h"
 #include "mesh/stage.h"
+#include "volume/fold.h"
 
 /* Resident: 25 bytes per cell (20, its source, and its share of a cluster), 16 or 28 per vertex (the position and its
  * source), 16 per shell face and what Embree takes; a field of scenes, 4 or 8 per vertex. While preparing, 48 per cell
@@ -214,6 +215,8 @@ static TetcastStatus take_cells(TetcastVolume *volume, const TetcastMesh *mesh, 
   const uint32_t end = (uint32_t)adjacency->cell_count; /* a cell from which nothing leads on, for lanes that rest */
   adjacency->cells[adjacency->cell_count] = (TcCell){0, {end, end, end, end}};
   status = tc_clusters_build(volume->context, adjacency, (const uint32_t(*)[4])adjacency->vertices, &volume->clusters);
+  if (!status)
+    status = tc_find_folds(adjacency, volume->positions, volume->positions_are_double, &volume->folds);
   tc_release(volume->context, adjacency->vertices);
   adjacency->vertices = NULL;
   return status;

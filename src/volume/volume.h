@@ -50,6 +50,7 @@ struct TetcastVolume {
 
   TcAdjacency adjacency; /* without cells where Embree holds every cell; `vertices` of it only there */
   TcClusters clusters;   /* none where Embree holds every cell */
+  bool folds;            /* cells that share a face overlap somewhere: one of them is turned inside out */
   TcShell shell;         /* of the whole volume */
 
   TcShared *shared; /* fields in the volume's order (rows.h), which scenes share */
