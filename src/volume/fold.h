@@ -6,10 +6,9 @@
 
 #include "mesh/adjacency.h"
 
-/* Sets *result. The adjacency must have its links and its vertices. `positions` are x, y, z of each vertex, of
+/* Whether the cells of an adjacency, with links and vertices, fold. `positions` are x, y, z of each vertex, of
  * magnitude at most 1, in single or in double precision. Cells that are flat, or thinner than what rounding to single
  * precision moves vertices by, count as not turned. */
-TetcastStatus tc_find_folds(const TcAdjacency *adjacency, const void *positions, bool positions_are_double,
-                            bool *result);
+bool tc_adjacency_folds(const TcAdjacency *adjacency, const void *positions, bool positions_are_double);
 
 #endif

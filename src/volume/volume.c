@@ -215,8 +215,7 @@ static TetcastStatus take_cells(TetcastVolume *volume, const TetcastMesh *mesh, 
   const uint32_t end = (uint32_t)adjacency->cell_count; /* a cell from which nothing leads on, for lanes that rest */
   adjacency->cells[adjacency->cell_count] = (TcCell){0, {end, end, end, end}};
   status = tc_clusters_build(volume->context, adjacency, (const uint32_t(*)[4])adjacency->vertices, &volume->clusters);
-  if (!status)
-    status = tc_find_folds(adjacency, volume->positions, volume->positions_are_double, &volume->folds);
+  volume->folds = tc_adjacency_folds(adjacency, volume->positions, volume->positions_are_double);
   tc_release(volume->context, adjacency->vertices);
   adjacency->vertices = NULL;
   return status;
