@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Cuts cells into tetrahedra, twice: first only to count, then into memory of the right size. */
+/* Cuts cells into tetrahedra. This is done twice: first only to count them, then into memory of the right size. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,13 +10,13 @@
 
 enum { GRAIN = 4096, BATCH = 32 };
 
-/* What a block of cells comes to; then, where it begins. */
+/* How much a block of cells is cut into; later, where the block's part of the result begins. */
 typedef struct Block {
   int64_t tetrahedra, centres, entries;
   TetcastCutInfo info;
 } Block;
 
-/* Memory for one cell; every array has `room`, but p one more. */
+/* Memory for one cell. Every array has room for `room` elements, tets.p for one more. */
 typedef struct Scratch {
   int64_t room;
   void *memory;
@@ -42,7 +42,7 @@ typedef struct Cutter {
       *ways; /* [cell_count]: 1 + that of a hexahedron that the table cuts, found the first time; 0: any other cell */
   TetcastCut *cut;
   atomic_llong first_bad;
-  bool writes; /* the second time */
+  bool writes; /* whether this is the second time */
 } Cutter;
 
 /* A cell as loaded. */
@@ -190,7 +190,7 @@ static Fault load_polyhedron(Cutter *cutter, int64_t i, Scratch *scratch, Cell *
     at += size + 1;
   }
   const int64_t room = corners > cell->nodes ? corners : cell->nodes;
-  if (room > scratch->room) { /* what was read is lost */
+  if (room > scratch->room) { /* the nodes that were read are gone then, and are read again */
     int64_t first, nodes;
     find_nodes(cutter, i, &first, &nodes);
     if (!reserve(cutter, scratch, room))
@@ -230,7 +230,7 @@ static Fault load_curved(Cutter *cutter, int64_t i, int64_t begin, Scratch *scra
   const int64_t stride = tc_array_stride(&desc->orders, 3);
   for (int k = 0; k < 3 && i < desc->orders.count; ++k)
     order[k] = tc_array_double(&desc->orders, stride, i, k);
-  /* What says nothing is not given: files have zeros for cells of a fixed order. */
+  /* Zeros count as not given: files have them for cells of a fixed order. */
   const bool given = i < desc->orders.count && order[0] >= 1;
   if (!tc_lattice_make(cell->type, cell->nodes, given ? order : NULL, desc->subdivision, &cell->lattice))
     return BAD_NODES;
@@ -362,7 +362,7 @@ static bool add_point(Cutter *cutter, const Cell *cell, const int at[3], const T
   return tc_cut_points_add(points, key, p, entries);
 }
 
-/* One after the other: the first cell that has a point gives it its number. */
+/* Cells are looked at one after the other, as the first cell that has a point gives it its number. */
 static TetcastStatus add_lattices(Cutter *cutter) {
   Scratch *scratch = &cutter->scratch[0];
   TcCutPoints *points = &cutter->cut->points;
@@ -540,9 +540,9 @@ static void cut_cell(Cutter *cutter, const Cell *cell, Scratch *scratch, Block *
   info->oversized += cell->oversized;
 }
 
-/* ── hexahedra, of which there may be many and nothing be wrong with any ── */
+/* ── hexahedra by table: most meshes of them have no faults, so that this is all it takes ── */
 
-/* The nodes of cell i; false where something is to be told about it. */
+/* Reads the nodes of hexahedron i. False if it has a fault that has to be told. */
 static inline bool read_hexahedron(const Cutter *cutter, int64_t i, uint32_t id[8]) {
   const TetcastCellsDesc *desc = cutter->desc;
   const TetcastArray *nodes = &desc->connectivity;
@@ -579,8 +579,8 @@ static inline bool read_hexahedron(const Cutter *cutter, int64_t i, uint32_t id[
   return largest < (uint64_t)cutter->vertex_count;
 }
 
-/* Counts those of the cells [begin, end) that the table cuts. First their vertices are asked for, so that memory is
- * waited for once. */
+/* Counts the tetrahedra of those of the cells [begin, end) that the table cuts. Their vertices are all prefetched
+ * first, so that memory is waited for once. */
 static void count_hexahedra(Cutter *cutter, int64_t begin, int64_t end, Block *block) {
   uint32_t id[BATCH][8];
   int way[BATCH];
@@ -669,7 +669,7 @@ static void add_info(TetcastCutInfo *sum, const TetcastCutInfo *part) {
     sum->segments[1] = part->segments[1];
 }
 
-/* Turns the blocks' counts into where they begin, and gets the memory. */
+/* Computes from the blocks' counts where each begins, and allocates the memory. */
 static TetcastStatus lay_out(Cutter *cutter) {
   TetcastCut *cut = cutter->cut;
   TcCutPoints *points = &cut->points;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* One straight cell into tetrahedra. How a face is cut depends on the indices of its vertices alone: both its cells do
- * the same. */
+/* Cuts one straight cell into tetrahedra. How a face is cut depends only on the indices of its vertices, so that both
+ * of its cells cut it in the same way. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "mesh/cut.h"
 
-/* The share of the volume that tetrahedra may overlap by and still count as not overlapping: what rounding coordinates
- * to single precision does to flat ones. */
+/* Tetrahedra that overlap by less than this share of the volume count as not overlapping, as rounding coordinates to
+ * single precision makes flat ones overlap. */
 static const double fold_limit = 1e-6;
 
 #define SIZES(...)                                                                                                     \
@@ -200,7 +200,7 @@ static void cut_from_corner(const TcShape *shape, uint32_t corner, TcTets *tets)
 /* A polyhedron with several faces in a plane, or corners in a line, has flat tetrahedra at them, whose faces may be
  * without area and then those of more than two; unless it gets a vertex inside. */
 void tc_cut_shape(const TcShape *shape, TcTets *tets) {
-  if (shape == tc_shape(TC_TETRAHEDRON)) { /* stays as it came */
+  if (shape == tc_shape(TC_TETRAHEDRON)) { /* it stays as it is */
     for (uint32_t k = 0; k < 4; ++k)
       tets->tet[0][k] = k;
     tets->count = tc_has_twice(tets->id, 4) ? 0 : 1;

@@ -7,7 +7,7 @@
 
 static const double DEGREE = 0.017453292519943295;
 
-/* In units of the mesh's size: squares of distances must not overflow. */
+/* Lengths are in units of the mesh's size, so that squares of distances don't overflow. */
 #define TOO_FAR 0x1p500
 
 /* Makes v a unit vector; false if it has no direction. Scaled first, so that no unit overflows. */

@@ -42,11 +42,12 @@ struct TetcastVolume {
    * there are no such vertices. */
   TcWeld *welds; /* [weld_count], of the mesh's vertices */
   int64_t weld_count;
-  uint32_t (*corner_vertices)[4]; /* [cell_count]: for each of a cell's vertices in ascending order, the mesh's vertex
-                                     that the cell has there */
+  /* [cell_count]: the mesh's vertices of each cell, in the ascending order of the volume's. */
+  uint32_t (*corner_vertices)[4];
 
-  uint8_t *corner_order; /* [cell_count]: two bits for each of a cell's vertices in ascending order, which of the mesh's
-                            it is; NULL: not asked for */
+  /* [cell_count]: for each of a cell's vertices in ascending order, two bits that tell its place among the cell's
+   * vertices in the mesh. NULL unless fields of corners were asked for. */
+  uint8_t *corner_order;
 
   TcAdjacency adjacency; /* without cells where Embree holds every cell; `vertices` of it only there */
   TcClusters clusters;   /* none where Embree holds every cell */
