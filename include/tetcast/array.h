@@ -8,6 +8,7 @@
 extern "C" {
 #endif
 
+/* The types of numbers that arrays may hold. */
 typedef enum TetcastType {
   TETCAST_TYPE_NONE = 0,
   TETCAST_TYPE_FLOAT32,
@@ -21,10 +22,14 @@ typedef enum TetcastType {
 /* A view of tuples in memory. The tuple's number of components is stated where an array is asked for, e.g. [n, 3].
  * Component j of tuple i lies at (char *)data + i * stride + j * sizeof(type); no alignment is required. */
 typedef struct TetcastArray {
-  const void *data; /* may be NULL only if count is 0 */
+  /* The first component of the first tuple. May be NULL only if count is 0. */
+  const void *data;
+  /* The type of each component. TETCAST_TYPE_NONE: there is no array, where one may be left out. */
   TetcastType type;
-  int64_t count;  /* tuples, ≥ 0 */
-  int64_t stride; /* bytes from one tuple to the next; 0: tuples lie next to each other */
+  /* The number of tuples, ≥ 0. */
+  int64_t count;
+  /* Bytes from one tuple to the next. 0: tuples lie next to each other. */
+  int64_t stride;
 } TetcastArray;
 
 /* What becomes of arrays handed in. */

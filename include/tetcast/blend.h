@@ -6,10 +6,9 @@
 extern "C" {
 #endif
 
-/* What is made of the scalar s along a ray, t being the length along it. All are exact, up to rounding: between its
- * vertices, the scalar of points is linear in each tetrahedron, that of cells constant. But for the first, they are
- * made of those parts of a ray, from the eye on, that lie in cells whose values are all finite; a ray that has none has
- * no value. */
+/* Which value is made of the scalar s along a ray, t being the length along it. All are exact up to rounding, as a
+ * scalar of points is linear in each tetrahedron, and one of cells constant. All but the first use the parts of a ray,
+ * from the eye on, that lie in cells whose values are all finite; a ray without such parts has no value. */
 typedef enum TetcastBlend {
   TETCAST_BLEND_COMPOSITE = 0, /* emission and absorption through a transfer function, or by coefficients */
   TETCAST_BLEND_MAXIMUM,       /* the largest value */

@@ -8,6 +8,7 @@
 extern "C" {
 #endif
 
+/* How rays spread: from one point, or parallel. */
 typedef enum TetcastProjection { TETCAST_PERSPECTIVE = 0, TETCAST_ORTHOGRAPHIC } TetcastProjection;
 
 /* Where the picture is taken from, in the mesh's coordinates. Each pixel is a ray that starts at the eye (perspective)
@@ -16,19 +17,28 @@ typedef enum TetcastProjection { TETCAST_PERSPECTIVE = 0, TETCAST_ORTHOGRAPHIC }
  * · tan(fovy/2) · up with right = forward × up and up made perpendicular to forward; orthographic rays start at the eye
  * moved by the same expression with height/2 in place of tan(fovy/2). */
 typedef struct TetcastCamera {
-  double eye[3];    /* less than 2^499 (1e150) times the mesh's largest coordinate; beyond, rendering is
-                       TETCAST_ERROR_ARGUMENT */
-  double target[3]; /* must differ from eye */
-  double up[3];     /* need not be perpendicular, must not be parallel, to the direction of view */
+  /* The point that the picture is taken from. Coordinates must be below 2^499 (1e150) times the mesh's largest one;
+   * beyond, rendering is TETCAST_ERROR_ARGUMENT. */
+  double eye[3];
+  /* The point that is seen in the picture's middle. It must differ from the eye. */
+  double target[3];
+  /* The direction that points upwards in the picture. It need not be perpendicular to the direction of view, but must
+   * not be parallel to it. */
+  double up[3];
+  /* Whether rays start at the eye or are parallel. */
   TetcastProjection projection;
-  double fovy;   /* vertical angle of view in degrees, in (0, 180); perspective only */
-  double height; /* vertical extent in the mesh's unit of length, > 0, limited as eye; orthographic only */
+  /* The vertical angle of view in degrees, in (0, 180). Used in perspective only. */
+  double fovy;
+  /* The picture's height in the mesh's unit of length, > 0 and limited as the eye's coordinates are. Used in
+   * orthographic projection only. */
+  double height;
 } TetcastCamera;
 
-/* The camera that sees all of `bounds` (xmin, xmax, ymin, …): looking along −z with +y up at their centre, 30° of view,
- * from R / sin 15° away, R half the diagonal; for pictures higher than wide (aspect = W/H < 1) farther, so that the
- * width fits as well. height is set to 2 R, for a switch to orthographic. For bounds beyond ±1e307 the eye may be
- * infinitely far away, which is no camera. */
+/* Makes the camera that sees all of `bounds` (xmin, xmax, ymin, ymax, zmin, zmax). It looks along −z with +y up at
+ * their centre, with 30° of view, from the distance R / sin 15° where R is half the diagonal. For pictures higher than
+ * wide (aspect = W/H < 1) it is farther away, so that the width fits as well. The height is set to 2 R, for a switch to
+ * orthographic projection. For bounds beyond ±1e307 the eye may be infinitely far away, which no picture can be taken
+ * from. */
 TETCAST_API TetcastCamera tetcast_camera_default(const double bounds[6], double aspect);
 
 #ifdef __cplusplus

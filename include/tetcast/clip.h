@@ -8,8 +8,10 @@ extern "C" {
 
 /* The points x with normal · x ≥ offset, in the mesh's coordinates: what lies on a plane belongs to it. */
 typedef struct TetcastHalfSpace {
-  double normal[3]; /* points to what is kept; of any length above 0, finite */
-  double offset;    /* finite; in the unit of the coordinates times that of `normal` */
+  /* Points to what is kept; of any length above 0, finite. */
+  double normal[3];
+  /* Finite, in the unit of the coordinates times that of `normal`. */
+  double offset;
 } TetcastHalfSpace;
 
 #ifdef __cplusplus

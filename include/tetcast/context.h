@@ -18,25 +18,27 @@ extern "C" {
  *
  * What the library asks of its host, in every function:
  * - Floating point: nothing. It computes in the default environment (round to nearest, no traps, denormal numbers
- * count) whatever that of the calling thread is, which comes back as it was, flags included.
- * - Stack: less than 32 KiB of the calling thread's. Long work is done on threads of the library's own, which live no
- * longer than the call and take no signals, while the calling one waits. Where the system lets no thread start, the
- * calling one does the work alone; that takes up to 256 KiB.
- * - Threads: as many as there are. What can't be started is done without, and changes no bit of a result. */
+ *   count) whatever the calling thread's environment is, and gives that back as it was, flags included.
+ * - Stack: less than 32 KiB of the calling thread's. Long work is done on threads of the library's own, while the
+ *   calling thread waits; they end with the call and take no signals. Where the system lets no thread start, the
+ * calling thread does the work alone, which takes up to 256 KiB.
+ * - Threads: as many as can be started. With fewer of them, calls take longer, and results are the same to the bit. */
 typedef struct TetcastContext TetcastContext;
 
+/* What kind of message it is. */
 typedef enum TetcastSeverity {
   TETCAST_SEVERITY_ERROR,   /* the call fails; its status says how */
   TETCAST_SEVERITY_WARNING, /* the call goes on; something about the input is worth knowing */
-  TETCAST_SEVERITY_INFO
+  TETCAST_SEVERITY_INFO     /* nothing is wrong */
 } TetcastSeverity;
 
-/* Receives one line of UTF-8 without newline; `text` is valid during the call only. It comes on the thread that made
- * the call which the message is about, in that thread's own floating-point environment; from several at a time when
- * several threads make calls with this context. It must return: no exception, no longjmp(). */
+/* Receives a message: one line of UTF-8 without newline; `text` is valid during the call only. It is called on the
+ * thread that made the call which the message is about, in that thread's own floating-point environment; so if several
+ * threads make calls with this context, it is called from several of them at a time. It must return: no exception, no
+ * longjmp(). */
 typedef void TetcastMessageFunction(void *user, TetcastSeverity severity, const char *text);
 
-/* `size` > 0 bytes aligned to `alignment` (a power of two ≤ 64), or NULL. Called from any thread. */
+/* Returns `size` > 0 bytes aligned to `alignment` (a power of two ≤ 64), or NULL. Called from any thread. */
 typedef void *TetcastAllocateFunction(void *user, size_t size, size_t alignment);
 /* Gives back what the allocate function returned; never called with NULL. */
 typedef void TetcastReleaseFunction(void *user, void *memory);
@@ -46,20 +48,34 @@ typedef void TetcastReleaseFunction(void *user, void *memory);
  * Return false to cancel: the call then soon ends with TETCAST_ERROR_CANCELLED. */
 typedef bool TetcastProgressFunction(void *user, double fraction);
 
+/* Who is told how far long work has come. */
 typedef struct TetcastProgress {
-  TetcastProgressFunction *function; /* NULL: none */
+  /* Is called during long work. NULL (the default): nobody is told. */
+  TetcastProgressFunction *function;
+  /* Is handed to the function. May be NULL (the default). */
   void *user;
 } TetcastProgress;
 
+/* What a context is made from. */
 typedef struct TetcastContextDesc {
-  uint32_t cookie; /* set by tetcast_context_desc_default(); catches an uninitialised struct */
-  int threads;     /* how many threads may work in a call, while the caller's waits; 0: as many as processors */
-  TetcastMessageFunction *message; /* NULL: messages are dropped */
+  /* Set by tetcast_context_desc_default(), so that a struct which was not made by it is told apart. */
+  uint32_t cookie;
+  /* The number of threads that work in a call, while the calling thread waits; ≥ 0. Default: 0, one per processor. */
+  int threads;
+  /* Receives messages. NULL (the default): messages are dropped. */
+  TetcastMessageFunction *message;
+  /* Is handed to the message function. May be NULL (the default). */
   void *message_user;
-  TetcastAllocateFunction *allocate; /* both or neither; NULL: the C library's. Embree, VTK, TetGen and OpenImageIO */
-  TetcastReleaseFunction *release;   /* allocate for themselves. */
+  /* Allocates the library's memory. Given together with `release`, or NULL (the default) for the C library's functions.
+   * Embree, VTK, TetGen and OpenImageIO allocate for themselves. */
+  TetcastAllocateFunction *allocate;
+  /* Frees what `allocate` has returned. NULL (the default) if and only if `allocate` is NULL. */
+  TetcastReleaseFunction *release;
+  /* Is handed to `allocate` and `release`. May be NULL (the default). */
   void *memory_user;
 } TetcastContextDesc;
+
+/* Makes a desc with every setting at its default. */
 
 TETCAST_API TetcastContextDesc tetcast_context_desc_default(void);
 
@@ -75,14 +91,16 @@ TETCAST_API TetcastStatus tetcast_context_set_threads(TetcastContext *context, i
 /* The number of threads in force, ≥ 1. */
 TETCAST_API int tetcast_context_threads(const TetcastContext *context);
 
-/* For the adapters and for clients that want their own words in the same stream: sends a printf-formatted message
- * to the context's callback and returns `status`, so that `return tetcast_context_error(…)` reads well.
- * `context` may be NULL (nothing is sent). */
+/* Sends a printf-formatted error message to the context's callback and returns `status`, so that callers can write
+ * `return tetcast_context_error(…)`. For the adapters, and for clients that want their own messages to go the same way.
+ * `context` may be NULL: nothing is sent then. */
 TETCAST_API TetcastStatus tetcast_context_error(TetcastContext *context, TetcastStatus status, const char *format, ...)
 #if defined(__GNUC__)
     __attribute__((format(printf, 3, 4)))
 #endif
     ;
+
+/* Sends a printf-formatted message of any severity likewise. */
 TETCAST_API void tetcast_context_message(TetcastContext *context, TetcastSeverity severity, const char *format, ...)
 #if defined(__GNUC__)
     __attribute__((format(printf, 3, 4)))

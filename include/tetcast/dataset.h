@@ -17,46 +17,56 @@
 extern "C" {
 #endif
 
-/* What a file holds: tetrahedra (other volumetric cells are cut into them on reading), and arrays over points and
+/* The contents of a file: tetrahedra (other volumetric cells are cut into them on reading), and arrays over points and
  * cells. Immutable; may be read from several threads at a time. */
 typedef struct TetcastDataset TetcastDataset;
 
 /* What to read of a file. */
 typedef struct TetcastDatasetDesc {
-  uint32_t cookie;        /* set by tetcast_dataset_desc_default(); catches an uninitialised struct */
-  const char *block;      /* of a file of several blocks those of this name, or in the group of this name; NULL: all */
-  int64_t step;           /* of a file of several time steps this one, from 0; negative: from the end, -1 is the last */
-  double time;            /* the step at this time instead; NaN: none asked for */
-  double merge_tolerance; /* negative: only points of different pieces are merged, where they coincide exactly. Else all
-                             points no further than this apart, in the file's unit of length; 0: all that coincide
-                             exactly */
-  const char *only;   /* of the arrays none is read but those that this selector may name, see tetcast_dataset_field(),
-                       * and no other that is damaged is told of; legacy .vtk files have to be read whole; NULL: all */
-  bool cell_to_point; /* fields of cell arrays are of points: at each the plain mean over the file's cells that use it,
-                       * component by component; only volumetric cells count, and not those whose value is NaN or
-                       * infinite */
-  int subdivision;    /* what each edge of a curved cell is cut into, to TETCAST_MAX_SUBDIVISION; 0: as its nodes lie */
-  bool no_displacement; /* points are where an Exodus file has them at first; else they are moved by its displacements
-                         * of the step: the first   vector of the points whose name begins with "dis", in any case of
-                         * letters */
+  /* Set by tetcast_dataset_desc_default(), so that a struct which was not made by it is told apart. */
+  uint32_t cookie;
+  /* The name of the blocks to read, or of a group of blocks, in a file of several. NULL (the default): all blocks. */
+  const char *block;
+  /* The number of the step to read in a file of several time steps, from 0. Negative numbers count from the end, -1
+   * being the last. Default: 0. */
+  int64_t step;
+  /* The time of the step to read, in place of its number. Default: NaN, the number counts. */
+  double time;
+  /* All points no further than this apart are merged, in the file's unit of length; 0: all that coincide exactly. If it
+   * is negative, points are merged only if they are of different pieces and coincide exactly. Default: -1. */
+  double merge_tolerance;
+  /* A selector (tetcast_dataset_field()): only arrays that it may name are read, and nothing is told of damage to
+   * others. Legacy .vtk files are always read whole. NULL (the default): all arrays are read. */
+  const char *only;
+  /* Whether fields of cell arrays are turned into fields of points. At each point, the value is the mean over the
+   * file's volumetric cells that use it, component by component, without cells whose value is NaN or infinite.
+   * Default: false. */
+  bool cell_to_point;
+  /* The number of pieces that each edge of a curved cell is cut into, at most TETCAST_MAX_SUBDIVISION. Default: 0, as
+   * many as the edge's nodes make. */
+  int subdivision;
+  /* Whether points stay where an Exodus file has them at first. If not, they are moved by the step's displacements: the
+   * first vector of the points whose name begins with "dis", in upper or lower case. Default: false. */
+  bool no_displacement;
 } TetcastDatasetDesc;
 
-/* All blocks, the first step, no tolerance, curved cells cut as their nodes lie. */
+/* Makes a desc of all blocks, all arrays and the first step, with every setting at its default. */
 TETCAST_API TetcastDatasetDesc tetcast_dataset_desc_default(void);
 
-/* Format i = 0, 1, … of those that can be read: what it is called, and the usual ends of its files' names, e.g. ".ex2
- * .exo .e". Static storage; either may be NULL. False beyond the last. */
+/* Describes format i = 0, 1, … of those that can be read: its name, and the usual ends of its files' names, such as
+ * ".ex2 .exo .e". Both are in static storage; either pointer may be NULL. False beyond the last. */
 TETCAST_API bool tetcast_dataset_format(int i, const char **name, const char **extensions);
 
-/* Reads a file in one of these formats; which one is told by content, then by extension. desc NULL: the default.
- * TETCAST_ERROR_IO: can't be opened. TETCAST_ERROR_DATA: truncated, damaged, no mesh, no cells, only surface cells,
- * indices out of range. TETCAST_ERROR_ARGUMENT: has no such block or step; the message lists those there are. The
- * reader library's own complaints become part of the message.
+/* Reads a file in one of these formats, which is told by the file's content, then by its extension. `desc` may be NULL
+ * (defaults). A file that can't be opened is TETCAST_ERROR_IO; one that is truncated or damaged, or has no mesh, no
+ * volumetric cells, or indices out of range, is TETCAST_ERROR_DATA; a block or step that it doesn't have is
+ * TETCAST_ERROR_ARGUMENT, and the message lists those it has. The reader library's own complaints become part of the
+ * message.
  *
- * An array that can't be read costs nothing else: it is left out with one warning, which names it and says why; only
- * where none of the arrays can be read is the file an error. What a file says of sizes is held against what it holds
- * before memory is taken: an error comes after no more than four times the file's size and 256 MB. Any thread may read
- * at any time, whatever the others do.
+ * An array that can't be read is left out with one warning, which names it and says why; the rest of the file is read.
+ * Only if none of its arrays can be read is the file an error. Sizes that a file claims are compared with its real size
+ * before memory is allocated, so that reading a damaged file takes no more memory than four times its size and 256 MB.
+ * Any thread may read at any time, whatever the others do.
  *
  * Exodus, VTKHDF, EnSight, CGNS and OpenFOAM files are read by programs of their own (tetcast-vtk-exodus …), which may
  * crash without harm to the caller. They are started by posix_spawn() from the folder that the environment's
@@ -76,19 +86,26 @@ TETCAST_API TetcastStatus tetcast_dataset_read(TetcastContext *context, const ch
 /* Frees the dataset and sets *dataset to NULL. NULL and pointer to NULL do nothing. */
 TETCAST_API void tetcast_dataset_destroy(TetcastDataset **dataset);
 
-/* How many cells of type i = 0, 1, … the file has, largest count first; name e.g. "tetrahedron", "hexahedron",
- * "triangle", static storage. False beyond the last. Counted as they are in the file, before anything is cut, but
- * without ghosts and those left out for their coordinates. */
+/* Tells how many cells of type i = 0, 1, … the file has, largest count first. The name is such as "tetrahedron",
+ * "hexahedron" or "triangle", in static storage. False beyond the last. Cells are counted as they are in the file,
+ * before anything is cut, but without ghosts and without those left out for their coordinates. */
 TETCAST_API bool tetcast_dataset_cell_type(const TetcastDataset *dataset, int i, const char **name, int64_t *count);
 
+/* Describes an array of a file. */
 typedef struct TetcastDatasetArray {
-  const char *name;     /* valid while the dataset lives */
-  const char *selector; /* what selects it, see tetcast_dataset_field(): its name, or "NAME:cell" where that is a point
-                           array's; as long */
-  TetcastAssociation association; /* of points or cells */
-  int components;                 /* ≥ 1 */
-  const char *type;               /* as the file has it, e.g. "float64", "int32"; static storage */
-  bool active;                    /* the file marks it as its active scalars */
+  /* The array's name. Valid while the dataset lives, never NULL. */
+  const char *name;
+  /* The selector that names it (tetcast_dataset_field()): its name, or "NAME:cell" where points have an array of that
+   * name as well. Valid while the dataset lives, never NULL. */
+  const char *selector;
+  /* Whether it has values of points or of cells. */
+  TetcastAssociation association;
+  /* The number of components of each value, ≥ 1. */
+  int components;
+  /* The type of its numbers in the file, such as "float64" or "int32". In static storage, never NULL. */
+  const char *type;
+  /* Whether the file marks it as its active scalars. */
+  bool active;
 } TetcastDatasetArray;
 
 /* Describes numeric array i = 0, 1, …, in the file's order, point arrays first. False beyond the last. A file of
@@ -96,26 +113,37 @@ typedef struct TetcastDatasetArray {
  * tetcast_dataset_block(). */
 TETCAST_API bool tetcast_dataset_array(const TetcastDataset *dataset, int i, TetcastDatasetArray *array);
 
-/* The name of array i = 0, 1, … that the file has and that was not read: it is not the one that the description asked
- * for, or it can't be read. Valid while the dataset lives. NULL beyond the last. */
+/* The name of array i = 0, 1, … of those in the file that were not read, as the desc didn't ask for them or as they
+ * can't be read. Valid while the dataset lives. NULL beyond the last. */
 TETCAST_API const char *tetcast_dataset_unread(const TetcastDataset *dataset, int i);
 
-/* Number of the file's points, and of its cells of any kind, of all pieces, before any are merged or left out. */
+/* The number of points in all pieces of the file, before any are merged or left out. */
 TETCAST_API int64_t tetcast_dataset_point_count(const TetcastDataset *dataset);
+
+/* The number of cells of any kind in all pieces of the file, before any are left out. */
 TETCAST_API int64_t tetcast_dataset_cell_count(const TetcastDataset *dataset);
 
+/* What became of the pieces of a file. */
 typedef struct TetcastDatasetPieces {
-  int64_t pieces;           /* that were put together; 1 for a file that is not in pieces */
-  int64_t surfaces;         /* pieces left out, as they hold no volumetric cell; not counted anywhere else */
-  int64_t ghost_cells;      /* cells left out: copies of other pieces' cells, or blanked */
-  int64_t ghost_points;     /* points left out that only those used */
-  int64_t merged_points;    /* points that became one with another */
-  int64_t differing_points; /* of those the ones at which a point array had several values */
-  int64_t nonfinite_points; /* points left out, as a coordinate is NaN or infinite */
-  int64_t nonfinite_cells;  /* cells left out, as they use such points */
+  /* The number of pieces that were put together; 1 for a file that is not in pieces. */
+  int64_t pieces;
+  /* The number of pieces left out as they hold no volumetric cell. They are not counted anywhere else. */
+  int64_t surfaces;
+  /* The number of cells left out as they are copies of other pieces' cells, or blanked. */
+  int64_t ghost_cells;
+  /* The number of points left out as only such cells use them. */
+  int64_t ghost_points;
+  /* The number of points that became one with another point. */
+  int64_t merged_points;
+  /* The number of merged points at which some point array had several values. */
+  int64_t differing_points;
+  /* The number of points left out as a coordinate is NaN or infinite. */
+  int64_t nonfinite_points;
+  /* The number of cells left out as they use such points. */
+  int64_t nonfinite_cells;
 } TetcastDatasetPieces;
 
-/* What became of the pieces. NULL: all 0. */
+/* Tells what became of the pieces. All numbers are 0 if `dataset` is NULL. */
 TETCAST_API TetcastDatasetPieces tetcast_dataset_pieces(const TetcastDataset *dataset);
 
 /* The name of block i = 0, 1, … of the file, e.g. "fluid/zone 1" within a group, whether it was read or not; valid
@@ -125,31 +153,33 @@ TETCAST_API const char *tetcast_dataset_block(const TetcastDataset *dataset, int
 /* The time of step i = 0, 1, … of the file, ascending. False beyond the last, and for files without time steps. */
 TETCAST_API bool tetcast_dataset_time(const TetcastDataset *dataset, int64_t i, double *time);
 
-/* The step that was read; 0 for files without. */
+/* The number of the step that was read; 0 for files without time steps. */
 TETCAST_API int64_t tetcast_dataset_step(const TetcastDataset *dataset);
 
-/* What cutting its cells came to, all 0 when all of them were tetrahedra already. Vertices that were added come after
- * the file's points. */
+/* Tells what cutting the file's cells has come to; all numbers are 0 if all cells were tetrahedra already. Vertices
+ * that were added come after the file's points. */
 TETCAST_API TetcastCutInfo tetcast_dataset_cut(const TetcastDataset *dataset);
 
-/* The tetrahedra. Arrays may be the dataset's own: it must outlive the mesh, which the caller destroys. */
+/* Makes a mesh of the tetrahedra, which the caller destroys. The mesh may refer to arrays of the dataset, which must
+ * outlive it. */
 TETCAST_API TetcastStatus tetcast_dataset_mesh(const TetcastDataset *dataset, TetcastMesh **mesh);
 
-/* The scalar that `selector` names: "NAME", with ":point" or ":cell" behind it where both have an array of that name
- * (else that of the points is meant), and with a component behind that: ":2" (from 0), ":x" (by the name that the file
- * gives it; else x, y, z of two or three components, xx, yy, zz, xy, yz, xz of six and xx, xy, … zz of nine; in any
- * case of letters) or ":mag" (Euclidean length), which is also what an array of several is taken by where none is
- * named. An array whose name contains colons is found by its whole name first.
+/* Makes a field of the scalar that `selector` names, which the caller destroys. A selector is the array's name, "NAME";
+ * then ":point" or ":cell", which may be left out unless both have an array of that name and the cells' is meant; then
+ * a component, ":2" by number (from 0), ":x" by name, or ":mag" for the Euclidean length, which is also taken of an
+ * array of several components if none is named. Components have the names that the file gives them; if it gives none,
+ * they are x, y, z of two or three, xx, yy, zz, xy, yz, xz of six, and xx, xy, … zz of nine. Upper and lower case are
+ * the same. An array whose name contains colons is found by its whole name first.
  *
- * NULL: the active scalars, of the points before the cells. Else an array that varies over what is drawn, of these one
- * of points before one of cells, and of these a scalar before a vector, the first in the file's order. Constant ones,
- * and then those that number points or cells (global ids), come only when there is nothing else.
+ * If `selector` is NULL, the field is that of the file's active scalars, of points before those of cells. If the file
+ * marks none, it is an array that varies over what is drawn: one of points before one of cells, and of these a scalar
+ * before a vector, and of these the first in the file. Constant arrays are taken only if there are no others, and
+ * arrays that number points or cells (global ids) only if there is nothing else at all.
  *
- * A file without arrays is TETCAST_ERROR_DATA. An unknown name or component is TETCAST_ERROR_ARGUMENT and the
- * message lists those there are. Cell arrays follow the tetrahedra the cells were cut into, or are
- * averaged if the description asked for that. The dataset must outlive the field,
- * which the caller destroys. `name` (may be NULL) receives the selector that selects the same again, valid while the
- * dataset lives. */
+ * A file without arrays is TETCAST_ERROR_DATA. An unknown name or component is TETCAST_ERROR_ARGUMENT, and the message
+ * lists those there are. Values of a cell are those of all tetrahedra that it was cut into, unless the desc asked for
+ * means at points. The dataset must outlive the field. `name` (may be NULL) receives a selector that names the same
+ * scalar again, valid while the dataset lives. */
 TETCAST_API TetcastStatus tetcast_dataset_field(const TetcastDataset *dataset, const char *selector,
                                                 TetcastField **field, const char **name);
 
@@ -162,6 +192,8 @@ TETCAST_API TetcastStatus tetcast_dataset_write(TetcastContext *context, const c
 /* Reads a closed or open surface of triangles (polygons are cut into them; coincident points merged exactly): .stl
  * (ASCII and binary), .ply, .off, .obj, .vtp and legacy .vtk. Freed with tetcast_surface_release(). */
 TETCAST_API TetcastStatus tetcast_surface_read(TetcastContext *context, const char *path, TetcastSurface *surface);
+
+/* Frees the arrays of a surface that tetcast_surface_read() has filled, and sets it to zero. */
 TETCAST_API void tetcast_surface_release(TetcastSurface *surface);
 
 #ifdef __cplusplus

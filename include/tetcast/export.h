@@ -2,7 +2,7 @@
 #ifndef TETCAST_EXPORT_H
 #define TETCAST_EXPORT_H
 
-/* Every function below has C linkage and default visibility; everything else in the shared libraries is hidden. */
+/* Marks the functions that the shared libraries export; everything else in them is hidden. */
 #if defined(_WIN32)
 #define TETCAST_API
 #else

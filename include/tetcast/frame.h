@@ -20,79 +20,108 @@ typedef struct TetcastFrame TetcastFrame;
 
 /* Channels beside red, green, blue, alpha; bits of a set. */
 typedef enum TetcastChannel {
-  /* A bound on the error of each of the pixel's four channels: what the tolerance let go; what rounding does to the
-   * places where rays meet faces and to the values there, to the integral, to the sum over a ray's segments; rounding
-   * to the frame's type. Measured along each ray, which takes longer. */
+  /* A bound on the error of each of the pixel's four channels. It contains what the tolerance allows; the rounding of
+   * the places where rays meet faces and of the values there, of the integral, of the sum over a ray's segments, and to
+   * the frame's type. It is measured along each ray, which takes longer. Where cells overlap, which of them comes first
+   * may be decided by rounding, which the bound leaves out. */
   TETCAST_CHANNEL_ERROR = 1,
 
-  /* Of a scene with coefficients (scene.h), for each group: */
-  TETCAST_CHANNEL_RADIANCE = 2,      /* unit of the emission times length */
+  /* The following three are of scenes with coefficients (scene.h) and have a value for each group. */
+  TETCAST_CHANNEL_RADIANCE = 2,      /* the radiance, in the emission's unit times length */
   TETCAST_CHANNEL_OPTICAL_DEPTH = 4, /* ∫ κ dt along the ray, through all of the mesh */
   TETCAST_CHANNEL_TRANSMITTANCE = 8, /* exp(−optical depth) */
 
-  /* Of a scene with coefficients: length of the ray's parts in the mesh's cells, in its unit; cells that overlap count
-     each. */
+  /* Of scenes with coefficients: the length of the ray's parts in cells, in the mesh's unit. Where cells overlap, each
+   * of them counts. */
   TETCAST_CHANNEL_PATH_LENGTH = 16,
 
-  /* Of a scene in a blend mode other than composite: the value along the ray, in the scalar's unit, or that times the
-   * mesh's unit of length; of several samples the mean of those that have one; NaN where none has. */
+  /* Of scenes in a blend mode other than composite: the value that the blend mode makes of the scalar, in the scalar's
+   * unit, or in that times the mesh's unit of length. With several samples it is the mean of those that have a value;
+   * NaN if none has. */
   TETCAST_CHANNEL_VALUE = 32
 } TetcastChannel;
 
+/* The most groups that coefficients may have. */
 #define TETCAST_MAX_GROUPS 256
 
+/* What a frame is made from. */
 typedef struct TetcastFrameDesc {
+  /* Set by tetcast_frame_desc_default(), so that a struct which was not made by it is told apart. */
   uint32_t cookie;
-  int64_t width, height; /* pixels, each in [1, 2^20] */
-  TetcastType type;   /* TETCAST_TYPE_FLOAT32 or TETCAST_TYPE_FLOAT64 (default); integration is in double either way */
-  void *pixels;       /* [height][width][4] of `type`, borrowed while the frame lives; NULL: the frame allocates */
-  int64_t row_stride; /* bytes from row to row of `pixels`; 0: rows lie next to each other */
-  uint32_t channels;  /* TetcastChannel bits; default 0. The frame allocates these */
-  int groups;         /* of the channels that have one for each, in [1, TETCAST_MAX_GROUPS]; default 1 */
+  /* The number of pixels in a row, in [1, 2^20]. */
+  int64_t width;
+  /* The number of rows, in [1, 2^20]. */
+  int64_t height;
+  /* The type of pixels and channels, TETCAST_TYPE_FLOAT32 or TETCAST_TYPE_FLOAT64 (the default). Light is integrated in
+   * double precision either way. */
+  TetcastType type;
+  /* [height][width][4] of `type`: where the pixels go, borrowed while the frame lives. NULL (the default): the frame
+   * allocates them. */
+  void *pixels;
+  /* Bytes from row to row of `pixels`. Default: 0, rows lie next to each other. */
+  int64_t row_stride;
+  /* The channels that the frame has besides, bits of TetcastChannel. The frame allocates them. Default: 0, none. */
+  uint32_t channels;
+  /* The number of values per pixel in channels that have one for each group, in [1, TETCAST_MAX_GROUPS]. Default: 1. */
+  int groups;
 } TetcastFrameDesc;
 
-/* What there is to know of a channel. */
+/* Describes a channel. */
 typedef struct TetcastChannelInfo {
-  /* Its bit. */
+  /* The channel's bit. */
   TetcastChannel channel;
-  /* What commands and picture files call it. */
+  /* The name by which the command and picture files call it. In static storage, never NULL. */
   const char *name;
-  /* A sentence that says what it is. */
+  /* A sentence that says what it is. In static storage, never NULL. */
   const char *description;
-  /* Not 0: it has a value for each group, else one. */
+  /* Not 0 if it has a value for each group, 0 if it has one. */
   int of_groups;
-  /* Not 0: only scenes with coefficients have it. */
+  /* Not 0 if only scenes with coefficients have it. */
   int needs_coefficients;
-  /* Not 0: only scenes in a blend mode other than composite have it. */
+  /* Not 0 if only scenes in a blend mode other than composite have it. */
   int needs_blend;
 } TetcastChannelInfo;
 
-/* Channel i = 0, 1, …, in the order in which files hold them; NULL beyond the last. Static storage. */
+/* Describes channel i = 0, 1, …, in the order in which files hold them; NULL beyond the last. Static storage. */
 TETCAST_API const TetcastChannelInfo *tetcast_channel_info(int i);
 
+/* Makes a desc with every setting at its default; width and height have none. */
 TETCAST_API TetcastFrameDesc tetcast_frame_desc_default(void);
 
+/* Makes a frame. What it allocates is 0 until a scene is rendered into it. */
 TETCAST_API TetcastStatus tetcast_frame_create(TetcastContext *context, const TetcastFrameDesc *desc,
                                                TetcastFrame **frame);
 
 /* Frees the frame (not borrowed pixels) and sets *frame to NULL. NULL and pointer to NULL do nothing. */
 TETCAST_API void tetcast_frame_destroy(TetcastFrame **frame);
 
+/* The number of pixels in a row. */
 TETCAST_API int64_t tetcast_frame_width(const TetcastFrame *frame);
-TETCAST_API int64_t tetcast_frame_height(const TetcastFrame *frame);
-TETCAST_API TetcastType tetcast_frame_type(const TetcastFrame *frame);
-TETCAST_API const void *tetcast_frame_pixels(const TetcastFrame *frame);
-TETCAST_API int64_t tetcast_frame_row_stride(const TetcastFrame *frame); /* bytes, never 0 */
 
+/* The number of rows. */
+TETCAST_API int64_t tetcast_frame_height(const TetcastFrame *frame);
+
+/* The type of pixels and channels. */
+TETCAST_API TetcastType tetcast_frame_type(const TetcastFrame *frame);
+
+/* [height][width][4]: the pixels, borrowed or the frame's own; valid while the frame lives. */
+TETCAST_API const void *tetcast_frame_pixels(const TetcastFrame *frame);
+
+/* Bytes from row to row of the pixels, never 0. */
+TETCAST_API int64_t tetcast_frame_row_stride(const TetcastFrame *frame);
+
+/* The number of values per pixel in channels that have one for each group. */
 TETCAST_API int tetcast_frame_groups(const TetcastFrame *frame);
 
-/* The values of one channel, [height][width] of the frame's type, [height][width][groups] for those of groups, rows
- * next to each other, valid while the frame lives; NULL if the frame was made without it. */
+/* The values of one channel, valid while the frame lives: [height][width] of the frame's type, or
+ * [height][width][groups] for a channel that has a value for each group, rows next to each other. NULL if the frame was
+ * made without it. */
 TETCAST_API const void *tetcast_frame_channel(const TetcastFrame *frame, TetcastChannel channel);
 
-/* Colours the pixels of a picture in a blend mode anew, without rendering: by the transfer function's colours at the
- * values of the channel TETCAST_CHANNEL_VALUE, which the frame must have (TETCAST_ERROR_ARGUMENT), times the pixels'
- * alpha, which stay as they are. It is, to the bit, what tetcast_scene_render() gives with that transfer function. */
+/* Colours the pixels of a picture in a blend mode anew, without rendering. A pixel's colour becomes the transfer
+ * function's colour at its value in the channel TETCAST_CHANNEL_VALUE, which the frame must have
+ * (TETCAST_ERROR_ARGUMENT), times its alpha, which stays as it is. The result is, to the bit, what
+ * tetcast_scene_render() gives with that transfer function. */
 TETCAST_API TetcastStatus tetcast_frame_recolor(TetcastFrame *frame, const TetcastTransferFunction *transfer_function);
 
 #ifdef __cplusplus

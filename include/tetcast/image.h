@@ -14,9 +14,11 @@
 extern "C" {
 #endif
 
+/* The type of numbers that an image file holds. */
 typedef enum TetcastPixelType {
-  TETCAST_PIXEL_DEFAULT = 0, /* what suits the format: PNG, JPEG uint8; EXR half, or float where the largest colour is
-                              * beyond 65504 or below 2^-14; TIFF float; else the format's own */
+  /* The type that suits the format: uint8 for PNG and JPEG; half for EXR, or float where the largest colour is above
+   * 65504 or below 2^-14; float for TIFF; for other formats the one that they have. */
+  TETCAST_PIXEL_DEFAULT = 0,
   TETCAST_PIXEL_UINT8,
   TETCAST_PIXEL_UINT16,
   TETCAST_PIXEL_HALF,
@@ -24,13 +26,21 @@ typedef enum TetcastPixelType {
   TETCAST_PIXEL_DOUBLE
 } TetcastPixelType;
 
+/* How an image is written. */
 typedef struct TetcastImageDesc {
+  /* Set by tetcast_image_desc_default(), so that a struct which was not made by it is told apart. */
   uint32_t cookie;
+  /* The type of numbers in the file. Default: TETCAST_PIXEL_DEFAULT. */
   TetcastPixelType pixel_type;
-  double background[4]; /* red, green, blue, alpha in [0, 1], not premultiplied: integer pixels are composited over it;
-                         * floating-point pixels hold the frame as it is, premultiplied, without background */
-  int channels_only;    /* not 0: the frame's channels without red, green, blue, alpha; it must have some. Default 0 */
+  /* Red, green, blue and alpha in [0, 1], not premultiplied: integer pixels are composited over this background.
+   * Floating-point pixels hold the frame as it is, premultiplied, without a background. Default: 1, 1, 1, 1, opaque
+   * white. */
+  double background[4];
+  /* Not 0: only the frame's channels are written, without red, green, blue and alpha; it must have some. Default: 0. */
+  int channels_only;
 } TetcastImageDesc;
+
+/* Makes a desc with every setting at its default. */
 
 TETCAST_API TetcastImageDesc tetcast_image_desc_default(void);
 
@@ -51,8 +61,9 @@ TETCAST_API TetcastImageDesc tetcast_image_desc_default(void);
 TETCAST_API TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, const TetcastFrame *frame,
                                               const TetcastImageDesc *desc);
 
-/* Whether `path` could be written with `desc` (NULL: default): extension known, pixel type possible, folder there and
- * writable. For a check before long work; the same messages as writing. */
+/* Checks whether `path` could be written with `desc` (NULL: default): that its extension is known, that the format can
+ * hold the pixel type, and that its folder exists and can be written to. To be asked before long work; messages are
+ * those of writing. */
 TETCAST_API TetcastStatus tetcast_image_check(TetcastContext *context, const char *path, const TetcastImageDesc *desc);
 
 /* Reads the distances at which a picture's rays stop (TetcastRenderDesc.stop) into `depth` [height][width], rows from

@@ -12,17 +12,22 @@
 extern "C" {
 #endif
 
-/* Vertices and tetrahedra, as they came. Immutable; may be read from several threads at a time. */
+/* Vertices and tetrahedra, as they were given. Immutable; may be read from several threads at a time. */
 typedef struct TetcastMesh TetcastMesh;
 
+/* What a mesh is made from. */
 typedef struct TetcastMeshDesc {
+  /* Set by tetcast_mesh_desc_default(), so that a struct which was not made by it is told apart. */
   uint32_t cookie;
-  TetcastArray vertices; /* [n, 3] float32 or float64, finite, any unit of length */
-  TetcastArray
-      tetrahedra; /* [m, 4] int32, uint32, int64 or uint64, each in [0, n); the order of a cell's vertices is free */
+  /* [n, 3] float32 or float64: the coordinates of the vertices, finite, in any unit of length. */
+  TetcastArray vertices;
+  /* [m, 4] int32, uint32, int64 or uint64, each in [0, n): the vertices of each tetrahedron, in any order. */
+  TetcastArray tetrahedra;
+  /* Whether the two arrays are copied (the default) or borrowed. */
   TetcastOwnership ownership;
 } TetcastMeshDesc;
 
+/* Makes a desc of an empty mesh that copies its arrays. */
 TETCAST_API TetcastMeshDesc tetcast_mesh_desc_default(void);
 
 /* Makes a mesh after checking that coordinates are finite, those of cells from −1e300 to 1e300, and indices in range
@@ -33,37 +38,54 @@ TETCAST_API TetcastStatus tetcast_mesh_create(TetcastContext *context, const Tet
 /* Frees the mesh and sets *mesh to NULL. NULL and pointer to NULL do nothing. */
 TETCAST_API void tetcast_mesh_destroy(TetcastMesh **mesh);
 
+/* The number of vertices n. */
 TETCAST_API int64_t tetcast_mesh_vertex_count(const TetcastMesh *mesh);
+
+/* The number of tetrahedra m. */
 TETCAST_API int64_t tetcast_mesh_tetrahedron_count(const TetcastMesh *mesh);
 
-/* Views of the mesh's arrays, valid while it lives: [n, 3] and [m, 4], of the type they came in. */
+/* [n, 3]: the vertices, of the type they came in; valid while the mesh lives. */
 TETCAST_API TetcastArray tetcast_mesh_vertices(const TetcastMesh *mesh);
+
+/* [m, 4]: the tetrahedra, of the type they came in; valid while the mesh lives. */
 TETCAST_API TetcastArray tetcast_mesh_tetrahedra(const TetcastMesh *mesh);
 
-/* Vertices `vertices[3]` and indices `indices[4]` as double and int64; i must be in range. */
+/* The coordinates of vertex i in [0, n) as doubles. */
 TETCAST_API void tetcast_mesh_vertex(const TetcastMesh *mesh, int64_t i, double position[3]);
+
+/* The vertices of tetrahedron i in [0, m). */
 TETCAST_API void tetcast_mesh_tetrahedron(const TetcastMesh *mesh, int64_t i, int64_t indices[4]);
 
 /* Bounds of the vertices that tetrahedra use: xmin, xmax, ymin, ymax, zmin, zmax; all zero for a mesh without cells. */
 TETCAST_API void tetcast_mesh_bounds(const TetcastMesh *mesh, double bounds[6]);
 
-/* The health of a mesh. None of these keeps it from being rendered. */
+/* The health of a mesh. None of what is counted here keeps it from being rendered. */
 typedef struct TetcastMeshHealth {
-  int64_t boundary_faces;    /* faces of one cell only */
-  int64_t nonmanifold_faces; /* faces of three cells or more */
-  int64_t components;        /* sets of cells connected through faces */
-  int64_t degenerate_cells;  /* volume zero as computed in double, or a vertex twice */
-  int64_t inverted_cells; /* negative volume: (v1 − v0) × (v2 − v0) · (v3 − v0) < 0. Order is free: worth a look only
-                             when mixed */
-  int64_t duplicate_cells;     /* cells whose four vertices another cell before them has */
-  int64_t unused_vertices;     /* vertices of no cell */
-  int64_t coincident_vertices; /* used vertices whose coordinates another used vertex before them has: unmerged seams */
-  double volume;               /* sum of the cells' absolute volumes */
-  double boundary_area;        /* area of the faces at which rays enter and leave: boundary and, for each of its cells,
-                                  non-manifold */
+  /* The number of faces of one cell only. */
+  int64_t boundary_faces;
+  /* The number of faces of three cells or more. */
+  int64_t nonmanifold_faces;
+  /* The number of parts of the mesh that no shared faces connect with each other. */
+  int64_t components;
+  /* The number of cells with a volume of zero, as computed in double precision, or with a vertex twice. */
+  int64_t degenerate_cells;
+  /* The number of cells with a negative volume: (v1 − v0) × (v2 − v0) · (v3 − v0) < 0. As the order of a cell's
+   * vertices is free, this tells of a fault only where some cells are inverted and others are not. */
+  int64_t inverted_cells;
+  /* The number of cells with the same four vertices as a cell before them. */
+  int64_t duplicate_cells;
+  /* The number of vertices that no cell uses. */
+  int64_t unused_vertices;
+  /* The number of used vertices with the same coordinates as a used vertex before them, as at unmerged seams. */
+  int64_t coincident_vertices;
+  /* The sum of the cells' absolute volumes, in the mesh's unit of length cubed. */
+  double volume;
+  /* The area of the faces at which rays enter and leave, in the mesh's unit of length squared: boundary faces once, and
+   * faces of three cells or more once for each of their cells. */
+  double boundary_area;
 } TetcastMeshHealth;
 
-/* Examines the mesh; about as long as preparing a volume of it. */
+/* Examines the mesh. That takes about as long as preparing a volume of it. */
 TETCAST_API TetcastStatus tetcast_mesh_health(TetcastContext *context, const TetcastMesh *mesh,
                                               TetcastMeshHealth *health);
 

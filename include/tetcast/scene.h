@@ -39,27 +39,28 @@ TETCAST_API void tetcast_scene_destroy(TetcastScene **scene);
  * renders. On error the scene keeps its former field. */
 TETCAST_API TetcastStatus tetcast_scene_set_field(TetcastScene *scene, const TetcastField *field);
 
-/* As that, the field that another scene of the same volume has: both then use one copy of its values, and the field
- * itself isn't needed. A scene of another volume, or one without a field, is TETCAST_ERROR_ARGUMENT. */
+/* Sets or replaces the scalar by the field that another scene of the same volume has. Both scenes then use one copy of
+ * its values, and the field itself isn't needed. A scene of another volume, or one without a field, is
+ * TETCAST_ERROR_ARGUMENT. */
 TETCAST_API TetcastStatus tetcast_scene_share_field(TetcastScene *scene, const TetcastScene *other);
 
-/* A transfer function from a colour map: colours of preset `name` (tetcast_preset_name()) over [low, high] with an
- * extinction that rises from 0 at `low` to what makes rays that meet anything opaque to one half on average, whatever
- * the unit of length and however values are distributed; only where that is above the largest double, in a mesh smaller
- * than some 1e-308, it is that. The scene must have a field (TETCAST_ERROR_ARGUMENT); an unknown name is
- * TETCAST_ERROR_ARGUMENT. The caller destroys the result. */
+/* Makes a transfer function from a colour map: the colours of preset `name` (tetcast_preset_name()) over [low, high],
+ * with an extinction that rises linearly from 0 at `low`. At `high` it has the value that makes rays which meet the
+ * volume opaque to one half on average, whatever the unit of length and however values are distributed. That value is
+ * capped at the largest double, which only meshes smaller than some 1e-308 reach. The scene must have a field
+ * (TETCAST_ERROR_ARGUMENT); an unknown name is TETCAST_ERROR_ARGUMENT. The caller destroys the result. */
 TETCAST_API TetcastStatus tetcast_scene_create_preset(const TetcastScene *scene, const char *name, double low,
                                                       double high, TetcastTransferFunction **transfer_function);
 
-/* Sets or replaces the transfer function; what is needed of it is copied. Must not run while this scene renders. On
- * error the scene keeps its former one, or its coefficients. */
+/* Sets or replaces the transfer function, of which the scene takes a copy. Must not run while this scene renders. On
+ * error the scene keeps its former transfer function, or its coefficients. */
 TETCAST_API TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene,
                                                               const TetcastTransferFunction *transfer_function);
 
-/* Sets what is made of the scalar along rays; a new scene has TETCAST_BLEND_COMPOSITE. With another blend mode the
- * scene needs a field and a transfer function, of which only the colours are used: nothing is hidden by its extinction.
- * A pixel has the colour of its value, premultiplied by its alpha, which is 1 where the ray meets anything (with
- * several samples, the share of them that do), else 0; its value is the mean of those. An unknown blend mode is
+/* Sets how the scalar's values along a ray become one pixel; a new scene has TETCAST_BLEND_COMPOSITE. With another
+ * blend mode the scene needs a field and a transfer function, of which only the colours are used: nothing is hidden by
+ * its extinction. A pixel's value is the mean over those of its samples that meet the volume; its alpha is the share of
+ * samples that do; its colour is that of its value, premultiplied by its alpha. An unknown blend mode is
  * TETCAST_ERROR_ARGUMENT. Must not run while this scene renders. */
 TETCAST_API TetcastStatus tetcast_scene_set_blend(TetcastScene *scene, TetcastBlend blend);
 
@@ -106,22 +107,35 @@ TETCAST_API TetcastStatus tetcast_scene_set_clip(TetcastScene *scene, const Tetc
  *     radiance ∫ j(t) exp(−∫₀ᵗ κ) dt,   optical depth τ = ∫ κ dt,   transmittance e^−τ,
  *
  * κ in 1/length, in the mesh's unit, j in radiance per length. Of points they are linear in each tetrahedron, of cells
- * constant. Without extinction nothing is absorbed; without emission, as in radiography, there is no radiance. What
- * isn't given isn't computed. */
+ * constant. Without extinction nothing is absorbed; without emission, as in radiography, there is no radiance. Neither
+ * costs time where it isn't given. */
 typedef struct TetcastCoefficientsDesc {
+  /* Set by tetcast_coefficients_desc_default(), so that a struct which was not made by it is told apart. */
   uint32_t cookie;
-  const TetcastField *const
-      *extinction; /* [extinction_count], one scalar each: ≥ 0; above 2^999 / largest coordinate: as that */
-  const TetcastField *const *emission; /* [emission_count]; may be negative: what comes out is linear in it */
-  int extinction_count,
-      emission_count; /* 0: none; 1: the same for all groups; else the number of groups, to TETCAST_MAX_GROUPS */
-  const char *extinction_name, *emission_name; /* for messages; NULL: "extinction", "emission" */
+  /* [extinction_count] fields of one scalar each: κ of each group, ≥ 0, in 1/length. Values above
+   * 2^999 / largest coordinate count as that. NULL (the default) where extinction_count is 0. */
+  const TetcastField *const *extinction;
+  /* [emission_count] fields of one scalar each: j of each group, in radiance per length. Values may be negative, as
+   * the result is linear in them. NULL (the default) where emission_count is 0. */
+  const TetcastField *const *emission;
+  /* The number of extinction fields. 0 (the default): nothing is absorbed; 1: all groups have the same extinction; else
+   * the number of groups, at most TETCAST_MAX_GROUPS. */
+  int extinction_count;
+  /* The number of emission fields. 0 (the default): nothing is emitted; 1: all groups have the same emission; else the
+   * number of groups, at most TETCAST_MAX_GROUPS. */
+  int emission_count;
+  /* What messages call the extinction. NULL (the default): "extinction". */
+  const char *extinction_name;
+  /* What messages call the emission. NULL (the default): "emission". */
+  const char *emission_name;
 } TetcastCoefficientsDesc;
+
+/* Makes a desc without coefficients: set at least one of the two. */
 
 TETCAST_API TetcastCoefficientsDesc tetcast_coefficients_desc_default(void);
 
-/* Sets the coefficients, in place of former ones or of a transfer function; they are copied, and the volume's own field
- * is not used. Values of magnitude above 2^1022 count as that. To a group, cells that touch a NaN or an infinite value
+/* Sets the coefficients, in place of former ones or of a transfer function. They are copied; the scene's field is not
+ * used. Values of magnitude above 2^1022 count as that. To a group, cells that touch a NaN or an infinite value
  * of it are transparent and dark. A negative extinction is TETCAST_ERROR_DATA, and the message says where; a field that
  * isn't of the volume's mesh is TETCAST_ERROR_ARGUMENT. Must not run while this scene renders. On error the scene keeps
  * what it had. */
@@ -130,56 +144,71 @@ TETCAST_API TetcastStatus tetcast_scene_set_coefficients(TetcastScene *scene, co
 /* Number of groups of the coefficients, 0 without. */
 TETCAST_API int tetcast_scene_groups(const TetcastScene *scene);
 
+/* How a picture is computed. */
 typedef struct TetcastRenderDesc {
+  /* Set by tetcast_render_desc_default(), so that a struct which was not made by it is told apart. */
   uint32_t cookie;
-  TetcastIntegrator integrator; /* default: exact */
-  int integrator_n;             /* see there; at most 2^20; default 1; not used by exact */
-  int samples;    /* rays per pixel in [1, 2^16], a regular grid as near to square as the number allows; default 1: the
-                     centre */
-  TetcastIsa isa; /* at most this one is used; default: auto. All give the same picture up to rounding */
-  double tolerance; /* ≥ 0, finite; default 0: exact. Else, a picture sooner: none of a pixel's four channels is further
-                     * than this from the exact picture's. Absolute, in the units of the channel (alpha: 1 is opaque).
-                     * Only with the exact integrator. Rays are walked in single precision where a bound on what that
-                     * costs allows it: with a point field and a transfer function without jumps, AVX2 or AVX-512, from
-                     * 1e-3 or 1e-4 on, depending on how steep both are. The bound takes it that cells don't overlap:
-                     * where a mesh folds over itself, single precision may be further off. */
-  const TetcastArray *stop; /* [height · width], float or double, rows from the top: the distance from its start at
-                             * which every ray of the pixel ends, in the mesh's unit of length: from the eye, or, of an
-                             * orthographic camera, from the plane through it, along the ray, not along the direction of
-                             * view. So a picture is made that goes in front of opaque things of other origin. Infinity:
-                             * it doesn't end; 0 or less: it sees nothing; NaN is TETCAST_ERROR_ARGUMENT. NULL
-                             * (default): none ends */
+  /* How emission and absorption are integrated along a ray (integrator.h). Default: TETCAST_INTEGRATOR_EXACT. */
+  TetcastIntegrator integrator;
+  /* The integrator's number n (integrator.h), in [1, 2^20]. Default: 1. The exact integrator doesn't use it. */
+  int integrator_n;
+  /* Rays per pixel, in [1, 2^16]: a regular grid as near to square as the number allows. Default: 1, through the
+   * pixel's centre. */
+  int samples;
+  /* The largest instruction set that may be used. All give the same picture up to rounding. Default: TETCAST_ISA_AUTO,
+   * the largest that the processor has. */
+  TetcastIsa isa;
+  /* How far each of a pixel's four channels may be from the exact picture's, finite and ≥ 0, in the units of the
+   * channel (alpha: 1 is opaque). A larger tolerance makes pictures faster. Default: 0, exact. Only with the exact
+   * integrator. Rays are walked in single precision where a bound on its error allows it: with a point field without
+   * NaN, a transfer function without jumps, a mesh that doesn't fold over itself (no cell is turned inside out against
+   * its neighbour), and AVX2 or AVX-512; from 1e-3 or 1e-4 on, depending on how steep field and transfer function are.
+   */
+  double tolerance;
+  /* [height · width], float or double, rows from the top, NULL (default) for none: the distance at which every ray of
+   * the pixel ends, in the mesh's unit of length: from the eye, or, of an orthographic camera, from the plane through
+   * it, along the ray, not along the direction of view. So a picture is made that goes in front of opaque things of
+   * other origin. Infinity: the ray doesn't end; 0 or less: it sees nothing; NaN is TETCAST_ERROR_ARGUMENT. */
+  const TetcastArray *stop;
+  /* Called while the picture is made (context.h). Default: not called. */
   TetcastProgress progress;
 } TetcastRenderDesc;
 
+/* Makes a desc with every setting at its default. */
 TETCAST_API TetcastRenderDesc tetcast_render_desc_default(void);
 
+/* What was done to make a picture. */
 typedef struct TetcastRenderStats {
-  int64_t rays;     /* cast: width × height × samples */
-  int64_t segments; /* cells crossed over a length > 0, summed over the rays */
-  double error; /* largest of the pixels' bounds as in TETCAST_CHANNEL_ERROR; NaN with another integrator than the exact
-                 * one, with a blend mode other than composite, and where neither that channel nor a tolerance is asked
-                 * for */
-  int64_t lost; /* rays whose walk ended before the boundary: 0, or a defect of tetcast */
-  const char *isa;       /* instruction set of the kernel that ran; static storage */
-  const char *precision; /* of the arithmetic: "double", or "single" (of the walk, rays where it may not do apart);
-                            static storage */
+  /* The number of rays cast: width × height × samples. */
+  int64_t rays;
+  /* The number of cells crossed over a length > 0, summed over the rays. */
+  int64_t segments;
+  /* The largest of the pixels' error bounds (TETCAST_CHANNEL_ERROR), ≥ 0. NaN with an integrator other than the exact
+   * one, with a blend mode other than composite, and where neither that channel nor a tolerance was asked for. */
+  double error;
+  /* The number of rays whose walk ended before the boundary. Anything but 0 is a defect of tetcast. */
+  int64_t lost;
+  /* The name of the instruction set that was used: "scalar", "avx2" or "avx512". In static storage, never NULL. */
+  const char *isa;
+  /* The arithmetic's precision: "double", or "single" where rays were walked in single precision, except for the few
+   * rays for which that would not do. In static storage, never NULL. */
+  const char *precision;
 } TetcastRenderStats;
 
 /* Renders into every pixel of `frame`, all its channels. `desc` and `stats` may be NULL. The scene must have
  * coefficients, or a transfer function and a field (TETCAST_ERROR_ARGUMENT).
  *
- * With coefficients, the pixel's colour is the radiance: of three groups as red, green, blue; of one group grey; of
- * another number grey, their mean. Its alpha is 1 − transmittance, the mean of the groups'. Only the exact integrator
- * works with them, to rounding whatever the tolerance. Channels of groups need a frame with the scene's number of
- * groups.
+ * With coefficients, the pixel's colour is the radiance: three groups are red, green and blue; one group is grey; of
+ * any other number the mean is shown in grey. Its alpha is the mean over the groups of 1 − transmittance. Only the
+ * exact integrator works with them, and the result is exact up to rounding whatever the tolerance. Channels of groups
+ * need a frame with the scene's number of groups.
  *
  * With another blend mode than composite, values are exact up to rounding in double precision, whatever the tolerance;
  * other integrators, coefficients and the error channel are TETCAST_ERROR_ARGUMENT then.
  *
- * With one instruction set the result has the same bits for any
- * number of threads. After an error or a cancelled call the frame's pixels are unspecified and the scene is as before.
- * Calls with different frames may run at the same time, also on one scene. */
+ * With one instruction set the result has the same bits for any number of threads. After an error or a cancelled call
+ * the frame's pixels are unspecified and the scene is as before. Calls with different frames may run at the same time,
+ * also on one scene. */
 TETCAST_API TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamera *camera,
                                                const TetcastRenderDesc *desc, TetcastFrame *frame,
                                                TetcastRenderStats *stats);

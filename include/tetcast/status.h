@@ -8,9 +8,9 @@
 extern "C" {
 #endif
 
-/* What a function came to. Functions that can fail return one of these and hand their result out through a
- * pointer; the sentence that says what and where goes to the message callback of the context (context.h).
- * On any status but TETCAST_OK an object that was to be created is not: its out pointer is set to NULL. */
+/* Whether a function succeeded, or why not. Functions that can fail return a status and hand out their result through a
+ * pointer. The sentence that says what is wrong, and where, goes to the message callback of the context (context.h).
+ * With any status but TETCAST_OK, an object that was to be created is not, and its out pointer is set to NULL. */
 typedef enum TetcastStatus {
   TETCAST_OK = 0,
   TETCAST_ERROR_ARGUMENT,    /* an argument is outside its documented range */

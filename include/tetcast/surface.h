@@ -8,14 +8,20 @@
 extern "C" {
 #endif
 
-/* Triangles that bound a body, for the mesher. Plain memory; who fills it says how it is freed. */
+/* Triangles that bound a body, for the mesher. It is plain memory; the function that fills it says how it is freed. */
 typedef struct TetcastSurface {
+  /* The number of vertices, ≥ 0. */
   int64_t vertex_count;
-  double *vertices; /* [vertex_count][3] */
+  /* [vertex_count][3]: their coordinates, in any unit of length. NULL if there are none. */
+  double *vertices;
+  /* The number of triangles, ≥ 0. */
   int64_t triangle_count;
-  int64_t *triangles; /* [triangle_count][3], each in [0, vertex_count) */
+  /* [triangle_count][3], each in [0, vertex_count): the vertices of each triangle. NULL if there are none. */
+  int64_t *triangles;
+  /* The number of cavities, ≥ 0. */
   int64_t hole_count;
-  double *holes; /* [hole_count][3]: a point inside each cavity; NULL if there are none */
+  /* [hole_count][3]: a point inside each cavity. NULL if there are none. */
+  double *holes;
 } TetcastSurface;
 
 #ifdef __cplusplus

@@ -15,20 +15,26 @@
 extern "C" {
 #endif
 
+/* What tetrahedra are to be like. */
 typedef struct TetcastTetgenDesc {
+  /* Set by tetcast_tetgen_desc_default(), so that a struct which was not made by it is told apart. */
   uint32_t cookie;
-  double quality;    /* ratio of circumradius to shortest edge to stay below, > 1; default 1.4; 0: as the surface's
-                      * triangles come.    TetGen aims at it: below 2, a few cells at the surface may exceed it */
-  double max_volume; /* largest volume of a cell in the surface's unit of length cubed; 0: no limit */
+  /* The ratio of circumradius to shortest edge that cells are to stay below, > 1. TetGen aims at it: below 2, a few
+   * cells at the surface may exceed it. 0: cells of any shape will do. Default: 1.4. */
+  double quality;
+  /* The largest volume of a cell, in the surface's unit of length cubed, ≥ 0. Default: 0, no limit. */
+  double max_volume;
 } TetcastTetgenDesc;
+
+/* Makes a desc with every setting at its default. */
 
 TETCAST_API TetcastTetgenDesc tetcast_tetgen_desc_default(void);
 
 /* Fills a closed surface with tetrahedra. TETCAST_ERROR_DATA with a message that says which: open surface,
- * self-intersection, non-finite or coincident input, nothing inside. Not to be called from two threads at a time:
- * TetGen has global state, and while it runs standard output goes to /dev/null, because it prints even when told not
- * to. Some assertions inside TetGen end the process; a program that must survive any surface makes the mesh in a
- * process of its own, as the command does. */
+ * self-intersection, non-finite or coincident input, nothing inside. It must not be called from two
+ * threads at a time, as TetGen has global state. While it runs, standard output goes to /dev/null, as TetGen prints
+ * even when told not to. Some assertions inside TetGen end the process; a program that must survive any surface makes
+ * the mesh in a process of its own, as the command does. */
 TETCAST_API TetcastStatus tetcast_tetgen_mesh(TetcastContext *context, const TetcastSurface *surface,
                                               const TetcastTetgenDesc *desc, TetcastMesh **mesh);
 

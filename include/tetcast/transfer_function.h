@@ -11,40 +11,55 @@
 extern "C" {
 #endif
 
-/* Scalar → colour and extinction. With extinction κ(s) ≥ 0 [1/length] and colour c(s) (not premultiplied) along a ray,
- *     C = ∫ c κ exp(−∫κ) dt,   α = 1 − exp(−∫κ dt)
- * (Max, Optical models for direct volume rendering, IEEE TVCG 1995). Both are piecewise linear, each with its own
- * knots, and constant beyond their first and last. Two knots at one value make a step; at the value itself the later
- * one holds. Immutable; may be used from several threads at a time. */
+/* Gives every value of the scalar a colour and an extinction. With extinction κ(s) ≥ 0 [1/length] and colour c(s) (not
+ * premultiplied) along a ray, C = ∫ c κ exp(−∫κ) dt,   α = 1 − exp(−∫κ dt) (Max, Optical models for direct volume
+ * rendering, IEEE TVCG 1995). Both are piecewise linear, each with its own knots, and constant beyond their first and
+ * last. Two knots at one value make a step; at the value itself the later one holds. Immutable; may be used from
+ * several threads at a time. */
 typedef struct TetcastTransferFunction TetcastTransferFunction;
 
 /* How opacity becomes extinction. `unit_distance` u > 0 has the mesh's unit of length. */
 typedef enum TetcastOpacityModel {
-  TETCAST_OPACITY_UNIT_DISTANCE = 0, /* α is what one u of the material has: κ = −ln(1 − α) / u at the knots. VTK's
-                                      * image mappers. α above 1 − 2^−53 counts as that, so κ ≤ 36.74 / u */
-  TETCAST_OPACITY_VTK_UNSTRUCTURED, /* κ = α / u: VTK's unstructured grid mappers */
-  TETCAST_OPACITY_OSPRAY            /* κ = α · densityScale: OSPRay, with unit_distance = 1 / densityScale */
+  /* α is the opacity of a layer of thickness u: κ = −ln(1 − α) / u at the knots, as VTK's image mappers take it. An α
+   * above 1 − 2^−53 counts as that, so that κ ≤ 36.74 / u. */
+  TETCAST_OPACITY_UNIT_DISTANCE = 0,
+  /* κ = α / u, as VTK's mappers of unstructured grids take it. */
+  TETCAST_OPACITY_VTK_UNSTRUCTURED,
+  /* κ = α · densityScale, as OSPRay takes it; u is 1 / densityScale. */
+  TETCAST_OPACITY_OSPRAY
 } TetcastOpacityModel;
 
+/* What a transfer function is made from: colours, and either extinctions or opacities. All arrays are copied. Values
+ * are in the scalar's unit and sorted; no more than two of them are equal. */
 typedef struct TetcastTransferFunctionDesc {
+  /* Set by tetcast_transfer_function_desc_default(), so that a struct which was not made by it is told apart. */
   uint32_t cookie;
-  const double
-      *color; /* [color_count][4]: value, red, green, blue; values sorted, no more than two equal, colours ≥ 0 */
-  int64_t color_count; /* ≥ 1 */
-  const double
-      *extinction; /* [extinction_count][2]: value, extinction ≥ 0; sorted likewise; NULL if opacity is given */
-  int64_t extinction_count; /* ≥ 1 with extinction */
-  const double *opacity;    /* [opacity_count][2]: value, opacity in [0, 1]; NULL if extinction is given */
-  int64_t opacity_count;    /* ≥ 1 with opacity */
-  double unit_distance;     /* > 0, default 1 */
+  /* [color_count][4]: the knots of the colour, each a value and red, green and blue ≥ 0. */
+  const double *color;
+  /* The number of the colour's knots, ≥ 1. */
+  int64_t color_count;
+  /* [extinction_count][2]: the knots of the extinction, each a value and an extinction ≥ 0, in 1/length. NULL (the
+   * default) if opacity is given. */
+  const double *extinction;
+  /* The number of the extinction's knots, ≥ 1 if extinction is given. */
+  int64_t extinction_count;
+  /* [opacity_count][2]: the knots of the opacity, each a value and an opacity in [0, 1]. NULL (the default) if
+   * extinction is given. */
+  const double *opacity;
+  /* The number of the opacity's knots, ≥ 1 if opacity is given. */
+  int64_t opacity_count;
+  /* The distance that opacities are given for (TetcastOpacityModel), in the mesh's unit of length, > 0. Default: 1. */
+  double unit_distance;
+  /* How opacity becomes extinction. Default: TETCAST_OPACITY_UNIT_DISTANCE. */
   TetcastOpacityModel opacity_model;
 } TetcastTransferFunctionDesc;
 
+/* Makes a desc without knots, with every setting at its default. */
 TETCAST_API TetcastTransferFunctionDesc tetcast_transfer_function_desc_default(void);
 
-/* All arrays are copied. Unsorted, negative or non-finite entries are TETCAST_ERROR_ARGUMENT; the message names the
- * knot. Any finite entry will do: where it is drawn, an extinction above 2^999 (5e300) / the mesh's largest coordinate
- * counts as that, which nothing can be seen through, and a colour above 2^500 (3e150) as that. */
+/* Makes a transfer function. Unsorted, negative or non-finite entries are TETCAST_ERROR_ARGUMENT; the message names the
+ * knot. Any finite entry is accepted. When it is drawn, an extinction above 2^999 (5e300) / the mesh's largest
+ * coordinate counts as that, which nothing can be seen through, and a colour above 2^500 (3e150) counts as that. */
 TETCAST_API TetcastStatus tetcast_transfer_function_create(TetcastContext *context,
                                                            const TetcastTransferFunctionDesc *desc,
                                                            TetcastTransferFunction **transfer_function);
@@ -52,14 +67,15 @@ TETCAST_API TetcastStatus tetcast_transfer_function_create(TetcastContext *conte
 /* Name of preset i = 0, 1, …; NULL beyond the last. Static storage. */
 TETCAST_API const char *tetcast_preset_name(int i);
 
-/* Frees it and sets the pointer to NULL. NULL and pointer to NULL do nothing. Scenes that use it keep what they need.
- */
+/* Frees it and sets the pointer to NULL. NULL and pointer to NULL do nothing. Scenes have copies of what they need. */
 TETCAST_API void tetcast_transfer_function_destroy(TetcastTransferFunction **transfer_function);
 
-/* The knots, opacity already turned into extinction: [*count][4] (value, r, g, b) and [*count][2] (value, extinction);
- * valid while the transfer function lives. */
+/* [*count][4]: the colour's knots, each a value and red, green and blue. Valid while the transfer function lives. */
 TETCAST_API const double *tetcast_transfer_function_color(const TetcastTransferFunction *transfer_function,
                                                           int64_t *count);
+
+/* [*count][2]: the extinction's knots, each a value and an extinction, also if opacities were given. Valid while the
+ * transfer function lives. */
 TETCAST_API const double *tetcast_transfer_function_extinction(const TetcastTransferFunction *transfer_function,
                                                                int64_t *count);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Context, messages and the one gate through which all memory of the library goes. */
+/* The context, messages, and the functions by which all memory of the library is allocated and freed. */
 #ifndef TC_BASE_BASE_H
 #define TC_BASE_BASE_H
 
@@ -21,7 +21,7 @@ struct TetcastContext {
   atomic_int threads; /* 0: all processors */
 };
 
-/* What a …_desc_default() writes into `cookie`, so that a struct that skipped it is noticed. */
+/* What each …_desc_default() writes into `cookie`, so that a struct which was not made by it is told apart. */
 enum { TC_COOKIE = 0x7e7ca57 };
 
 TetcastStatus tc_context_create(const TetcastContextDesc *desc, TetcastContext **context);
@@ -29,7 +29,7 @@ void tc_context_destroy(TetcastContext *context);
 int tc_context_threads(const TetcastContext *context);
 
 void tc_message_v(TetcastContext *context, TetcastSeverity severity, const char *format, va_list arguments);
-/* Returns `status`. */
+/* Sends an error message and returns `status`. */
 TetcastStatus tc_error(TetcastContext *context, TetcastStatus status, const char *format, ...)
 #if defined(__GNUC__)
     __attribute__((format(printf, 3, 4)))
@@ -46,14 +46,14 @@ void tc_warning(TetcastContext *context, const char *format, ...)
 void *tc_allocate(TetcastContext *context, int64_t count, size_t size);
 void tc_release(TetcastContext *context, void *memory); /* NULL does nothing */
 
-/* tc_allocate() that reports its failure: false and a message that names `what`. */
+/* As tc_allocate(), but reports failure: returns false and sends a message that names `what`. */
 bool tc_allocate_array(TetcastContext *context, void **array, int64_t count, size_t size, const char *what);
 
 /* ── views of typed arrays ── */
 
-size_t tc_type_size(TetcastType type); /* 0 for what is no type */
+size_t tc_type_size(TetcastType type); /* 0 if there is no such type */
 bool tc_type_is_float(TetcastType type);
-/* Bytes from tuple to tuple of an array of `components`. */
+/* The bytes from tuple to tuple of an array of so many components. */
 int64_t tc_array_stride(const TetcastArray *array, int components);
 double tc_array_double(const TetcastArray *array, int64_t stride, int64_t i, int component);
 int64_t tc_array_int64(const TetcastArray *array, int64_t stride, int64_t i, int component); /* integer types only */

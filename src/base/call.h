@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What becomes of a public call in a host that is not ours.
+/* How public functions run in a host application of which nothing is known.
  *
- * Its thread may have any floating-point environment (floating.h) and a stack of any size, and may be one that
- * callbacks have to come from, as interpreters want it. So what takes long or deep stacks is done on a thread of the
- * library's own, whose stack and environment are known, while the caller's waits and, when asked to, calls the host's
- * functions. Only where no thread can be started the caller's does the work, alone. */
+ * The calling thread may have any floating-point environment (floating.h) and a stack of any size. Callbacks may have
+ * to be called on it and on no other, as interpreters need it. So work that takes long, or needs a deep stack, is done
+ * on a thread of the library's own, whose stack and environment are known. Meanwhile the calling thread waits, and
+ * calls the host's functions when it is asked to. Only if no thread can be started, the calling thread does the work
+ * alone. */
 #ifndef TC_BASE_CALL_H
 #define TC_BASE_CALL_H
 
@@ -16,7 +17,7 @@
 /* A public function that has been entered: the environment of its caller. */
 typedef struct TcEntry {
   TcFloating host;
-  struct TcEntry *before; /* entered before on this thread: a callback may call the library */
+  struct TcEntry *before; /* the function entered before on this thread, from which a callback has called this one */
 } TcEntry;
 
 void tc_enter(TcEntry *entry);
@@ -29,8 +30,8 @@ void tc_leave(TcEntry *entry);
 
 typedef TetcastStatus TcBody(void *data);
 
-/* Does body(data) on a thread of the library's own. `progress`, which may be NULL, is what the body will report to: it
- * is replaced by what hands reports on to the calling thread. */
+/* Runs body(data) on a thread of the library's own. `progress`, which may be NULL, is what the body reports to; it is
+ * replaced by a function that hands reports on to the calling thread. */
 TetcastStatus tc_call(TcBody *body, void *data, TetcastProgress *progress);
 
 /* Calls the host's function for messages, on the thread that made the call. */
@@ -38,10 +39,10 @@ void tc_call_message(TetcastContext *context, TetcastSeverity severity, const ch
 
 /* ── threads of the library's own ── */
 
-/* What a thread has to know of the call that it works for; NULL: nothing. */
+/* What a thread has to know of the call that it works for. NULL if it works for none. */
 typedef struct TcCall TcCall;
 TcCall *tc_call_here(void);
-/* Whether this call has to do without further threads: its own could not be started. */
+/* Whether the call has to do without further threads, as its own could not be started. */
 bool tc_call_alone(void);
 
 typedef void TcThreadFunction(void *data);
@@ -53,7 +54,7 @@ typedef struct TcThread {
 } TcThread;
 
 /* Starts function(data) on a thread with the default floating-point environment, 4 MiB of stack and no signals but
- * those that a thread causes itself. False: the system has no thread for us. *thread must stay where it is until
+ * those that a thread causes itself. False if the system can't start one. *thread must stay where it is until
  * tc_thread_join(). */
 bool tc_thread_start(TcThread *thread, TcThreadFunction *function, void *data, TcCall *call);
 void tc_thread_join(TcThread *thread);

@@ -12,9 +12,9 @@
 
 #include <xmmintrin.h>
 
-/* Double and float are computed with by SSE, whose control and flags are one register. What little there is of the x87
- * is looked at without changing anything in the ordinary case: fegetenv() and fesetenv() take fifteen times as long,
- * too long for what returns one number of many. */
+/* SSE computes with double and float; its control bits and flags are one register. The x87, which is hardly used, is
+ * only changed if its control word isn't the default one. fegetenv() and fesetenv() would take fifteen times as long,
+ * too long for functions that return one number out of many. */
 typedef struct TcFloating {
   uint32_t mxcsr;
   uint16_t control, status; /* x87 */
@@ -22,7 +22,7 @@ typedef struct TcFloating {
 
 enum { TC_DEFAULT_MXCSR = 0x1f80, TC_DEFAULT_X87 = 0x37f, TC_X87_FLAGS = 0xff };
 
-/* Keeps the environment there is in *floating, and sets the default one. */
+/* Keeps the present environment in *floating, and sets the default one. */
 static inline void tc_floating_begin(TcFloating *floating) {
   floating->mxcsr = _mm_getcsr();
   __asm__ volatile("fnstcw %0" : "=m"(floating->control));

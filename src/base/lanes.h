@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Vectors of numbers, a ray in each lane. What is written with them is compiled several times: the build defines
- *     TC_LANES    how many: 1 (no vectors: a lane is a plain number), 4 or 8 doubles, 8 or 16 floats
- *     TC_SINGLE   0 for double, 1 for single precision
- * Arithmetic is written with operators. What needs an instruction of its own is below, and in one file for each
- * instruction set. */
+/* Vectors of numbers, with a ray in each lane. Code that is written with them is compiled several times. The build
+ * defines TC_LANES, the number of lanes: 1 (a vector is a plain number), 4 or 8 doubles, 8 or 16 floats. And it defines
+ * TC_SINGLE: 0 for double precision, 1 for single precision.
+ *
+ * Arithmetic is written with operators. Whatever else needs an instruction of its own is below, and in one file for
+ * each instruction set. */
 #ifndef TC_BASE_LANES_H
 #define TC_BASE_LANES_H
 
@@ -18,12 +19,12 @@
 #endif
 
 #define TC_INLINE static inline __attribute__((always_inline))
-/* Each file that is compiled for lanes uses some of these. */
+/* Unused as well, as no file that is compiled for lanes uses all of these functions. */
 #define TC_NOINLINE    static __attribute__((noinline, unused))
 #define TC_LIKELY(x)   __builtin_expect(!!(x), 1)
 #define TC_UNLIKELY(x) __builtin_expect(!!(x), 0)
 
-/* Before a loop over lanes or packets, whose instructions then mix. */
+/* Stands before a loop over lanes or packets that is to be unrolled, so that the instructions of its rounds mix. */
 #if defined(__clang__)
 #define TC_UNROLLED _Pragma("clang loop unroll(full)")
 #else
@@ -40,12 +41,13 @@ typedef int64_t TcInteger;
 #define TC_REAL_MIN DBL_MIN
 #endif
 
-/* TcVec: reals. TcInt: integers of the same width. TcWord: indices of 32 bits. TcMask: which lanes. */
+/* TcVec has real numbers in its lanes, TcInt integers of the same width, TcWord indices of 32 bits. TcMask is a set of
+ * lanes. */
 #if TC_LANES == 1
 typedef TcReal TcVec;
 typedef TcInteger TcInt;
 typedef uint32_t TcWord;
-#define TC_AT(vector, lane) (*((void)(lane), &(vector))) /* a lane of any of them */
+#define TC_AT(vector, lane) (*((void)(lane), &(vector))) /* one lane of any of these */
 #else
 typedef TcReal TcVec __attribute__((vector_size(TC_LANES * sizeof(TcReal))));
 typedef TcInteger TcInt __attribute__((vector_size(TC_LANES * sizeof(TcInteger))));
@@ -53,7 +55,7 @@ typedef uint32_t TcWord __attribute__((vector_size(TC_LANES * sizeof(uint32_t)))
 #define TC_AT(vector, lane) ((vector)[lane])
 #endif
 
-/* TcWide: doubles, whatever a TcVec is: rays are set up with them. */
+/* TcWide has doubles in its lanes, whatever a TcVec has. Rays are set up with it. */
 #if TC_LANES == 1
 typedef double TcWide;
 #else
@@ -96,8 +98,8 @@ TC_INLINE void tc_store_word(uint32_t *to, TcWord v) {
   memcpy(to, &v, sizeof v);
 }
 
-/* Keeps the compiler from knowing what is in an array that was stored as a vector and is read lane by lane, which it
- * would else replace by extracting lanes. */
+/* Stands between storing an array as a vector and reading it lane by lane. Without it, the compiler would extract lanes
+ * from the vector instead of reading them from memory, which takes longer. */
 #define TC_IN_MEMORY(array) __asm__ volatile("" : "+m"(array))
 
 #if TC_LANES == 1
@@ -109,7 +111,7 @@ TC_INLINE void tc_store_word(uint32_t *to, TcWord v) {
 #include "base/lanes_avx2.h"
 #endif
 
-/* ── what follows from these ── */
+/* ── functions that are made of the former ── */
 
 TC_INLINE TcMask tc_all(void) {
   return tc_mask_of(TC_ALL_LANES);

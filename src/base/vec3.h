@@ -15,8 +15,8 @@ static inline void tc_cross(const double a[3], const double b[3], double c[3]) {
   c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Makes v a unit vector; false if it has no direction. Scaled first where squares might overflow or underflow; that it is
- * by a power of two changes no bit otherwise. */
+/* Makes v a unit vector; false if it has no direction. Scaled first where squares might overflow or underflow; that it
+ * is by a power of two changes no bit otherwise. */
 static inline bool tc_normalize(double v[3]) {
   const double square = tc_dot(v, v);
   if (square > 0x1p-900 && square < 0x1p900) {

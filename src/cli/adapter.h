@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The adapters, loaded when a run needs them and not before: VTK alone brings hundreds of libraries. */
+/* The adapters. Each is loaded when a run first needs it, as VTK alone consists of hundreds of libraries. */
 #ifndef TETCAST_CLI_ADAPTER_H
 #define TETCAST_CLI_ADAPTER_H
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A slow ray caster to check the library by: in extended precision, every ray against every tetrahedron. It knows when
- * it doesn't know: where a ray lies in a face of two cells, or so near that rounding decides, both cells or neither may
- * take it for theirs. So each ray is cast once as it is and four times beside, by so little as a renderer in double
- * precision may be off. Where those four agree, that is the light; where they differ, as along a silhouette or between
- * cells of different values, no answer is right. */
+/* A slow ray caster to check the library by, which tests every ray against every tetrahedron in extended precision. If
+ * a ray lies in a face of two cells, or so near to it that rounding decides, both cells or neither of them may count it
+ * as their own. So each ray is cast once as it is, and four times moved aside by as little as a renderer in double
+ * precision may be off. Where these four agree, their light is the ray's. Where they differ, as along a silhouette or
+ * between cells of different values, no answer is right, and the ray is undecided. */
 #ifndef TETCAST_CLI_BRUTE_H
 #define TETCAST_CLI_BRUTE_H
 
@@ -11,7 +11,7 @@
 
 #include <tetcast/tetcast.h>
 
-/* What a ray has of one cell: arc lengths and the scalar there. */
+/* The part of a ray in one cell: arc lengths, and the scalar there. */
 typedef struct BruteSpan {
   long double t[2], s[2];
   int64_t vertices[4]; /* in order */
@@ -33,17 +33,19 @@ typedef struct BruteRay {
 void brute_trace(BruteRay *ray, const TetcastMesh *mesh, const TetcastField *field, const TetcastHalfSpace *half_spaces,
                  int half_space_count, const TetcastCamera *camera, int64_t width, int64_t height, int64_t pixel);
 
-/* What is known of a ray's premultiplied colour and opacity: each lies between two numbers. */
+/* The light of a ray: each of premultiplied colour and opacity lies between two numbers. */
 typedef struct BruteLight {
   long double low[4], high[4];
-  bool beside; /* the ray itself does not go with those beside it, which state the bounds; else it does, and both are
-                  its light */
-  long double spread; /* how much those beside it differ */
+  /* Whether the ray itself differs from those beside it, so that the numbers are theirs; else they are its own as well.
+   */
+  bool beside;
+  /* How much the rays beside it differ. */
+  long double spread;
 } BruteLight;
 
 void brute_shade(const BruteRay *ray, const TetcastTransferFunction *transfer_function, BruteLight *light);
 
-/* How far a pixel's largest error is at least. */
+/* A lower bound on the largest error of a pixel's values. */
 double brute_error(const BruteLight *light, const double rgba[4]);
 
 void brute_release(BruteRay *ray);

@@ -27,12 +27,12 @@ void cli_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void cli_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void cli_set_quiet(bool quiet);
 
-/* Warnings are errors from here on. A step that may have come upon one ends with `return cli_verdict(CLI_DONE)`:
- * CLI_FAILED if it has, else the code it is given. */
+/* Makes errors of warnings from here on. A step that may have given one ends with `return cli_verdict(CLI_DONE)`, which
+ * is CLI_FAILED if it has, else the code it is given. */
 void cli_set_strict(bool strict);
 int cli_verdict(int code);
 
-/* Of warnings that differ in nothing but numbers only the first is shown from here on: for work that does the same many
+/* Shows only the first of warnings that are the same but for numbers from here on: for work that does the same many
  * times. */
 void cli_warn_once(void);
 bool cli_quiet(void);
@@ -89,7 +89,7 @@ void *cli_grow(void *data, int count, int *capacity, size_t size);
 char *cli_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
 char *cli_print_list(const char *format, va_list list);
 
-/* Seconds of a clock that only goes forward. */
+/* The seconds of a clock that only goes forward. */
 double cli_seconds(void);
 
 /* Flushes standard output; CLI_DONE, or CLI_FAILED after a message if something could not be written. */

@@ -45,33 +45,32 @@ typedef struct Converge {
 
   BruteRay *rays; /* [ray_count], of the brute-force reference; NULL: not cast yet */
   int ray_count;
-  int rays_wanted;      /* how many there were to be */
-  bool rays_blank;      /* none of them shows anything, though the picture does */
-                        /* Of those that were tried: */
-  int rays_beside;      /* ran in faces or along edges, and were decided by rays beside them */
-  int rays_replaced;    /* could not be decided, and others were taken */
-  int rays_undecided;   /* could not be decided with a scaled extinction, and were left out there; the most of any scale
-                         */
-  double check_max;     /* of the exact pictures against the brute-force reference, over its rays */
-  double check_stiff;   /* the same with scaled extinction, the largest, … */
-  double check_scale;   /* … and where */
-  double analytic_step; /* last change of the analytic reference when its steps were halved */
-  int64_t lost;         /* rays, over all renderings */
+  int rays_wanted;      /* how many rays there were to be */
+  bool rays_blank;      /* whether none of them shows anything, though the picture does */
+  int rays_beside;      /* how many rays ran in faces or along edges, and were decided by rays beside them */
+  int rays_replaced;    /* how many rays could not be decided, and were replaced by others */
+  int rays_undecided;   /* how many rays could not be decided with a scaled extinction; the most of any scale */
+  double check_max;     /* the largest error of the exact pictures against the brute-force reference, over its rays */
+  double check_stiff;   /* the same over all scaled extinctions */
+  double check_scale;   /* the scale at which check_stiff was found */
+  double analytic_step; /* the last change of the analytic reference when its steps were halved */
+  int64_t lost;         /* the number of lost rays, over all renderings */
 
-  double work, done, step; /* for the progress bar: all, before the current step, of the current step */
+  double work, done, step; /* for the progress bar: all of the work, that before the current step, that of the step */
 } Converge;
 
 enum {
-  CONVERGE_RAYS = 64,         /* checked by brute force … */
+  CONVERGE_RAYS = 64,         /* the most rays that are checked by brute force */
   CONVERGE_REFINE_WIDTH = 96, /* the picture of the refinement study */
   CONVERGE_REFINE_HEIGHT = 72
 };
 
-/* … unless the mesh is so large that this many tests of a ray against a cell would not do; eight rays always. */
+/* The most tests of a ray against a cell for which the brute-force reference is cast. With larger meshes it has fewer
+ * rays, but always eight. */
 #define CONVERGE_TESTS 4e7
 
-/* Rays beside a ray whose light differs by more leave it undecided; differences to the brute-force reference above it
- * are said loudly. */
+/* If the light of rays beside a ray differs by more than this, the ray is undecided. Differences to the brute-force
+ * reference that are larger than this are reported as faults. */
 #define CONVERGE_TRUST 1e-9
 
 /* Appends a row to the plan. */
@@ -106,7 +105,7 @@ const ConvergeRow *converge_packets(const Converge *converge);
  * a curve of the other two; NaN where fewer than two points are clear of rounding. */
 double converge_slope(const Converge *converge, ConvergeStudy study, TetcastIntegrator integrator, bool rms);
 
-/* What goes into the folder: the data and how they are drawn. False after a message. */
+/* Writes the data, and the scripts that draw them, into the folder. False after a message. */
 bool converge_write_csv(const Converge *converge, const char *folder);
 bool converge_write_report(const Converge *converge, const char *folder);
 bool converge_write_plots(const Converge *converge, const char *folder);

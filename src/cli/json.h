@@ -12,7 +12,7 @@ json_t *cli_json_read(const char *path);
 /* The numbers of an array of up to `most`, or of a single number: how many, 0 if the value is anything else. */
 int cli_json_numbers(const json_t *value, int most, double *values);
 
-/* Names in data and of files are whatever bytes a program wrote; what is not UTF-8 becomes null. */
+/* A string, or null if it is not UTF-8: names in data and of files may be any bytes. */
 json_t *cli_json_text(const char *text);
 
 /* An array of numbers. */

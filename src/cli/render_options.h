@@ -70,7 +70,7 @@ typedef enum OptionId {
 
 typedef enum RenderCommand { COMMAND_RENDER = 1, COMMAND_CONVERGE = 2 } RenderCommand;
 
-/* What --range says. */
+/* The kinds of range that --range can name. */
 typedef enum RangeKind { RANGE_DEFAULT, RANGE_FIXED, RANGE_STEP, RANGE_SERIES } RangeKind;
 
 /* What an option has that may be given several times. */
@@ -152,7 +152,7 @@ static inline bool render_options_direct(const RenderOptions *options) {
   return render_options_given(options, OPTION_EXTINCTION) || render_options_given(options, OPTION_EMISSION);
 }
 
-/* What is made of the values along rays. */
+/* The blend mode. */
 static inline TetcastBlend render_options_blend(const RenderOptions *options) {
   return render_options_given(options, OPTION_BLEND) ? (TetcastBlend)options->blend : TETCAST_BLEND_COMPOSITE;
 }
@@ -224,7 +224,7 @@ bool render_option_of_command(OptionId id, RenderCommand command);
 bool render_option_has_extension(const char *path, const char *extension);
 bool render_option_is_tiff(const char *path);
 
-/* Whether --groups is given and says yes. */
+/* Whether --groups is given and is yes. */
 bool render_options_groups(const RenderOptions *options);
 
 #endif

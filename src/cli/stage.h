@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the options describe, read and prepared, up to the call that renders it. */
+/* A stage: what the options describe, read and prepared up to the call that renders it. */
 #ifndef TETCAST_CLI_STAGE_H
 #define TETCAST_CLI_STAGE_H
 
@@ -12,7 +12,7 @@
 
 typedef struct Stage {
   TetcastContext *context;
-  TetcastDataset *dataset; /* these four only until stage_drop_dataset() */
+  TetcastDataset *dataset; /* this one and the next three exist only until stage_drop_dataset() */
   TetcastMesh *mesh;
   TetcastField *field; /* NULL: coefficients instead */
   Coefficients coefficients;

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Extinction κ and emission j as fields, in groups: ∫ j e^−τ dt and τ = ∫ κ dt of each, exactly. A group's numbers
- * don't depend on what others there are, but for their last bit.
+/* Gathers emission and absorption where extinction κ and emission j are fields, in groups: ∫ j e^−τ dt and τ = ∫ κ dt
+ * of each group, exactly. A group's results don't depend on which other groups there are, except for their last bit.
  *
- * A few groups are integrated one after the other, each for all rays at once, a ray in each lane. Many are integrated
- * ray after ray, a group in each lane: a vertex's values lie next to each other in memory, and are loaded as they are.
+ * If there are few groups, they are integrated one after the other, with a ray in each lane. If there are many, rays
+ * are integrated one after the other, with a group in each lane: a vertex's values lie next to each other in memory, so
+ * that they can be loaded as vectors.
  *
- * What is gathered is, for each group, the radiance in the volume's unit of length and times emission_scale (so no sum
- * along a ray overflows), the optical depth and the transmittance; then the length of the path, the mean opacity of the
- * groups that differ in it, and a bound on the error of colour and opacity. */
+ * The sums are, for each group, the radiance in the volume's unit of length and times emission_scale (so that no sum
+ * along a ray overflows), the optical depth and the transmittance; then the length of the path; then the mean opacity,
+ * over the groups that have an extinction of their own; and with TC_BOUND a bound on the error of colour and opacity.
+ */
 #ifndef TC_GATHER_COEFFICIENTS_H
 #define TC_GATHER_COEFFICIENTS_H
 
@@ -15,26 +17,29 @@
 #include "optics/segment_lanes.h"
 #include "volume/coefficients.h"
 
-/* What is gathered, of a group in all rays or of a ray in a block of groups; composited in blocks, as TcEmission. */
+/* What is gathered in the lanes of a vector: of one group for all rays, or of one ray for TC_LANES groups. As in
+ * TcEmission, segments are composited in blocks. */
 typedef struct TcBeam {
-  TcVec radiance, depth, transmittance;                   /* of the finished blocks */
+  TcVec radiance, depth, transmittance;                   /* of the finished blocks; depth is the optical depth */
   TcVec block_radiance, block_depth, block_transmittance; /* of the block under way */
-  TcVec emitted, depth_error,
-      radiance_error; /* with TC_BOUND: Σ |radiance| as seen, and what the others may be off by */
+  TcVec emitted;                                          /* with TC_BOUND: Σ |radiance| as it is seen */
+  TcVec depth_error, radiance_error;                      /* with TC_BOUND: bounds on errors of depth and radiance */
 } TcBeam;
 
 typedef struct TcGroups {
-  bool by_rays; /* a group in each lane */
-  int blocks;   /* by_rays: of TC_LANES groups */
-  int columns;  /* by_rays: values of a ray */
-  TcBeam *beam; /* [groups], or [TC_LANES rays][blocks] */
-  /* [values][TC_LANES], or [TC_LANES rays][columns]: at the face where rays entered their cells, at the one where they
-   * left; with TC_BOUND, the range of the latter's vertices. */
+  bool by_rays; /* whether rays are integrated one after the other, with a group in each lane */
+  int blocks;   /* by_rays: the number of vectors of TC_LANES groups */
+  int columns;  /* by_rays: the number of values of a ray */
+  TcBeam *beam; /* [groups]; by_rays: [TC_LANES rays][blocks] */
+  /* [values][TC_LANES]; by_rays: [TC_LANES rays][columns]. The values at the face where rays have entered their cells,
+   * and at the face where they have left them; and with TC_BOUND the difference between the largest and the smallest
+   * value at the vertices of the latter. */
   double *near, *far, *range;
   TcLength length;
 } TcGroups;
 
-/* Whether values that are next to each other are those of groups one after the other. */
+/* Whether rays can be integrated one after the other: the values of groups that follow each other must lie next to each
+ * other in memory, and there must be enough groups to fill a vector. */
 TC_INLINE bool tc_groups_by_rays(const TcCoefficients *c) {
   if (TC_LANES == 1 || 2 * c->groups < TC_LANES)
     return false;
@@ -52,16 +57,17 @@ TC_INLINE int tc_groups_blocks(const TcCoefficients *c) {
   return (c->groups + TC_LANES - 1) / TC_LANES;
 }
 
-/* Doubles that a packet's TcGroups refers to. */
+/* How many doubles a packet's TcGroups refers to. */
 static size_t tc_groups_size(const TcCoefficients *c) {
   const size_t beams = tc_groups_by_rays(c) ? TC_LANES * (size_t)tc_groups_blocks(c) : (size_t)c->groups;
   return beams * sizeof(TcBeam) / sizeof(double) + 3 * TC_LANES * ((size_t)tc_coefficients_values(c) + TC_LANES);
 }
 
+/* Lets a packet's TcGroups refer to that many doubles at `memory`. */
 static void tc_groups_place(const TcCoefficients *c, double *memory, TcGroups *groups) {
   groups->by_rays = tc_groups_by_rays(c);
   groups->blocks = tc_groups_blocks(c);
-  groups->columns = tc_coefficients_values(c) + TC_LANES; /* as vectors reach beyond the last */
+  groups->columns = tc_coefficients_values(c) + TC_LANES; /* vectors reach beyond the last value */
   groups->beam = (TcBeam *)(void *)memory;
   groups->near =
       memory + (groups->by_rays ? TC_LANES * groups->blocks : c->groups) * (int64_t)(sizeof(TcBeam) / sizeof(double));
@@ -93,7 +99,7 @@ TC_INLINE TcVec tc_groups_load(const TcRows *rows, int64_t first) {
 #endif
 }
 
-/* One value of each lane: that of this column in the lanes' rows. */
+/* The value in one column of each lane's row. */
 TC_INLINE TcVec tc_groups_gather(const TcRows *rows, const int64_t row[TC_LANES], int column) {
   TcVec v = tc_set(0);
   if (rows->is_double) {
@@ -104,7 +110,7 @@ TC_INLINE TcVec tc_groups_gather(const TcRows *rows, const int64_t row[TC_LANES]
   return v;
 }
 
-/* Those of the points, where the rays of `mask` are: a group in each lane. */
+/* Interpolates the values of points where the rays of `mask` are, with a group in each lane. */
 TC_INLINE void tc_groups_at_rays(const unsigned on, const TcRows *rows, const TcGroups *groups, TcMask mask,
                                  const TcPacket *walk, double *values) {
   for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
@@ -125,7 +131,7 @@ TC_INLINE void tc_groups_at_rays(const unsigned on, const TcRows *rows, const Tc
   }
 }
 
-/* The same with a ray in each lane. Lanes that rest have vertices, too; their values count for nothing. */
+/* The same with a ray in each lane. Lanes without a ray have vertices, too, whose values are not stored. */
 TC_INLINE void tc_groups_at_lanes(const unsigned on, const TcRows *rows, const TcGroups *groups, TcMask mask,
                                   const TcPacket *walk, double *values) {
   int64_t row[3][TC_LANES];
@@ -156,7 +162,7 @@ TC_NOINLINE void tc_groups_enter(const TcGatherJob *job, TcGroups *groups, TcMas
   tc_groups_at(0, job->coefficients, groups, mask, walk, groups->near);
 }
 
-/* Those of the cells that the rays of `mask` have crossed. */
+/* Stores the values of the cells that the rays of `mask` have crossed. */
 TC_INLINE void tc_groups_in(const TcCoefficients *c, TcGroups *groups, TcMask mask, const uint32_t cell[TC_LANES]) {
   const int first = c->points ? c->points->width : 0;
   for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
@@ -171,15 +177,15 @@ TC_INLINE void tc_groups_in(const TcCoefficients *c, TcGroups *groups, TcMask ma
 
 /* ── integration ── */
 
-/* What is integrated in the lanes of a vector. */
+/* The segments over which is integrated, in the lanes of a vector. */
 typedef struct TcStretch {
   TcMask mask;
-  TcVec length, from, to;         /* from, to: what part of the cell it is */
-  TcVec spread_own, spread_range; /* with TC_BOUND: ∫ |error of f| dt is at most |f| times the one plus the range of f
-                                     times the other */
+  TcVec length, from, to; /* from, to: the part of the cell that counts, as fractions */
+  /* With TC_BOUND: ∫ |error of f| dt is at most |f| · spread_own + (range of f) · spread_range. */
+  TcVec spread_own, spread_range;
 } TcStretch;
 
-/* A value at both ends, and the bound on its error. */
+/* A value at both ends of a segment, and a bound on the integral of its error. */
 typedef struct TcEnds {
   TcVec near, far, spread;
 } TcEnds;
@@ -204,7 +210,8 @@ TC_INLINE TcEnds tc_groups_scaled(const unsigned on, TcEnds ends, double scale) 
   return ends;
 }
 
-/* An extinction's density and its integrals. */
+/* What a segment absorbs: its optical depth, a bound on the error of it, and the moments for its emission (segment.h).
+ */
 typedef struct TcAbsorption {
   TcMask valid;
   TcVec depth, spread;
@@ -233,7 +240,7 @@ TC_INLINE void tc_groups_emit(const unsigned on, const TcEnds *emission, const T
   TcVec radiance =
       stretch->length * tc_madd(emission->near, absorption->moments.m0, emission->far * absorption->moments.m1);
   const TcMask valid = tc_and(absorption->valid, tc_eq(radiance, radiance));
-  /* What lies behind the depth at which rays may end counts for nothing, whether they end there or not. */
+  /* Rays may end at this optical depth. Whether a ray does depends on others, so what lies behind must never count. */
   const TcMask reached = tc_le(beam->depth + beam->block_depth, tc_set(TC_OPAQUE_DEPTH));
   radiance = tc_select(tc_and(valid, reached), radiance, zero);
   beam->block_radiance = tc_madd(before, radiance, beam->block_radiance);
@@ -253,7 +260,7 @@ TC_INLINE void tc_groups_dim(const unsigned on, const TcAbsorption *absorption, 
     beam->depth_error += absorption->spread;
 }
 
-/* All groups one after the other. An extinction that is that of the group before is not evaluated again. */
+/* Integrates all groups one after the other. An extinction that several groups in turn have is evaluated once. */
 TC_INLINE void tc_groups_by_group(const unsigned on, const TcCoefficients *c, TcGroups *groups,
                                   const TcStretch *stretch) {
   TcAbsorption absorption;
@@ -275,7 +282,7 @@ TC_INLINE void tc_groups_by_group(const unsigned on, const TcCoefficients *c, Tc
   }
 }
 
-/* Ray `l`: blocks of groups. */
+/* Integrates all groups of ray `l`, TC_LANES groups at a time. */
 TC_INLINE void tc_groups_of_ray(const unsigned on, const TcCoefficients *c, TcGroups *groups, int l,
                                 const TcStretch *stretch) {
   const int extinction = c->slots[0], emission = c->slots[c->groups], first = l * groups->columns;
@@ -349,12 +356,12 @@ TC_NOINLINE void tc_groups_end_blocks(const TcGatherJob *job, TcGroups *groups) 
   }
 }
 
-/* A number of a beam: of ray l and group g. */
+/* A member of the beam of ray l and group g. */
 #define tc_groups_of(groups, l, g, member)                                                                             \
   ((groups)->by_rays ? TC_AT((groups)->beam[(l) * (groups)->blocks + (g) / TC_LANES].member, (g) % TC_LANES)           \
                      : TC_AT((groups)->beam[g].member, l))
 
-/* Whether all groups are so deep that e^−τ is zero in double precision; looked at now and then. */
+/* The lanes in `active` all of whose groups have an optical depth τ at which e^−τ is zero in double precision. */
 TC_NOINLINE TcMask tc_groups_are_complete(const TcGatherJob *job, TcGroups *groups, TcMask active) {
   unsigned complete = tc_bits(active);
   for (unsigned lanes = complete; lanes; lanes &= lanes - 1) {
@@ -397,7 +404,7 @@ static double tc_groups_bound(const TcGatherJob *job, const TcGroups *groups, co
 TC_NOINLINE void tc_groups_end(const unsigned on, const TcGatherJob *job, TcGroups *groups, const TcEnding *ending,
                                double (*sums)[TC_LANES]) {
   const TcCoefficients *c = job->coefficients;
-  const int distinct = c->extinction_count; /* groups whose transmittances are not one and the same */
+  const int distinct = c->extinction_count; /* the number of groups with a transmittance of their own */
   tc_groups_end_blocks(job, groups);
   for (int l = 0; l < TC_LANES; ++l) {
     double opacity = 0, bound = 0;

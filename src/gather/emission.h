@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Emission and absorption through a transfer function: ∫ c κ e^−τ dt, exactly, composited front to back in blocks of 64
- * steps and blocks into the total, so that rounding grows with the block's length plus the number of blocks, not with
- * the number of segments.
+/* Emission and absorption through a transfer function: ∫ c κ e^−τ dt, exactly. Segments are composited front to back
+ * within blocks of 64 steps, and blocks are composited into the total, so that rounding grows with a block's length
+ * plus the number of blocks instead of with the number of segments.
  *
- * Without TC_COLORED all that is seen has one colour: the colour is that times the opacity, and what is gathered is the
- * optical depth alone, an integral of a function that is linear in pieces. */
+ * Without TC_COLORED the transfer function has one colour only. A ray's colour is then that colour times its opacity,
+ * so it is enough to gather the optical depth, an integral of a function that is linear in pieces. */
 #ifndef TC_GATHER_EMISSION_H
 #define TC_GATHER_EMISSION_H
 
@@ -14,13 +14,21 @@
 #include "optics/segment_lanes.h"
 
 typedef struct TcEmission {
-  TcVec block_color[3], block_depth, block_transmittance; /* of the block under way */
-  TcVec before;                                           /* optical depth of the finished blocks */
-  TcLanePieces piece;                                     /* kept from packet to packet */
-  TcVec moved; /* with TC_BOUND: what is off by where rays meet faces; single precision: Σ spread */
-  int parts;   /* of the block under way */
-  _Alignas(64) double color[3][TC_LANES], depth[TC_LANES], transmittance[TC_LANES]; /* of the finished blocks */
-  TcLayers layers;                                                                  /* with TC_SURFACES */
+  /* The block under way. */
+  TcVec block_color[3], block_depth, block_transmittance;
+  int block_parts;
+  /* The optical depth of the finished blocks. */
+  TcVec before;
+  /* The piece of the transfer function that each lane was in last. It is kept from packet to packet, as neighbouring
+   * rays begin at similar values. */
+  TcLanePieces piece;
+  /* With TC_BOUND: the error that comes from the places where rays meet faces; in single precision the sum of
+   * TcPassage.spread, which tc_emission_end() turns into that error. */
+  TcVec moved;
+  /* The finished blocks, in double precision always. */
+  _Alignas(64) double color[3][TC_LANES], depth[TC_LANES], transmittance[TC_LANES];
+  /* With TC_SURFACES: where the lanes are among the surfaces. */
+  TcLayers layers;
 } TcEmission;
 
 TC_INLINE void tc_emission_begin(const TcGatherJob *job, TcEmission *e) {
@@ -29,7 +37,7 @@ TC_INLINE void tc_emission_begin(const TcGatherJob *job, TcEmission *e) {
   e->block_depth = e->before = tc_set(0);
   e->block_transmittance = tc_set(1);
   e->moved = tc_set(0);
-  e->parts = 0;
+  e->block_parts = 0;
   if (job->surfaces)
     tc_layers_begin(&e->layers);
   memset(e->color, 0, sizeof e->color);
@@ -38,7 +46,7 @@ TC_INLINE void tc_emission_begin(const TcGatherJob *job, TcEmission *e) {
     e->transmittance[l] = 1;
 }
 
-/* In double precision, whatever the block's is. */
+/* Adds the block under way to the finished ones and begins another. */
 TC_NOINLINE void tc_emission_end_block(const unsigned on, TcEmission *e) {
 #if TC_SINGLE
   TcReal color[3][TC_LANES], depth[TC_LANES];
@@ -68,10 +76,10 @@ TC_NOINLINE void tc_emission_end_block(const unsigned on, TcEmission *e) {
     e->block_color[k] = tc_set(0);
   e->block_depth = tc_set(0);
   e->block_transmittance = tc_set(1);
-  e->parts = 0;
+  e->block_parts = 0;
 }
 
-/* What parts of segments are off by, where the scalar's error over them is `spread` (tolerance.h). */
+/* Adds the error of parts of segments over which the integral of the scalar's error is `spread` (tolerance.h). */
 TC_INLINE void tc_emission_move(TcEmission *e, TcMask mask, TcVec length, TcVec s0, TcVec s1, TcVec spread) {
 #if TC_SINGLE
   (void)length, (void)s0, (void)s1;
@@ -81,14 +89,15 @@ TC_INLINE void tc_emission_move(TcEmission *e, TcMask mask, TcVec length, TcVec 
   const TcVec zero = tc_set(0), error = spread / length, change = tc_abs(s1 - s0), twice = spread + spread;
   TcVec moved = spread * piece->steep;
   const TcMask near = tc_or(tc_le(tc_min(s0, s1) - piece->low, error), tc_le(piece->high - tc_max(s0, s1), error));
-  const TcVec over = tc_select(tc_lt(twice, change * length), twice / change,
-                               length); /* the length of what is within the error of a knot */
+  /* The length over which the scalar is within its error of a knot. */
+  const TcVec over = tc_select(tc_lt(twice, change * length), twice / change, length);
   moved += tc_select(near, over * tc_madd(error, piece->beside, piece->jump), zero);
   e->moved += tc_select(tc_and(mask, tc_lt(zero, length)), moved, zero);
 #endif
 }
 
-/* Parts of segments within the lanes' pieces; of length 0, at `from`, where nothing is to happen. */
+/* Adds parts of segments that lie within the lanes' pieces. Lanes to which nothing is to be added are given a length of
+ * 0 and the scalar piece->from. */
 TC_INLINE void tc_emission_part(const unsigned on, TcEmission *e, TcReal thin, TcMask mask, TcVec length, TcVec s0,
                                 TcVec s1) {
   const TcLanePieces *piece = &e->piece;
@@ -110,8 +119,9 @@ TC_INLINE void tc_emission_part(const unsigned on, TcEmission *e, TcReal thin, T
   e->block_transmittance -= sum;
 }
 
-/* Segments of which some are not within their lanes' pieces: part after part. Lengths of parts come from differences of
- * scalars, not of positions along the segment: nothing cancels. */
+/* Adds segments of which some cross knots, one part between two knots after the other. The lengths of parts are
+ * computed from differences of scalars instead of differences of positions along the segment, so that nothing cancels.
+ */
 TC_NOINLINE void tc_emission_parts(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask,
                                    const TcVec *whole_length, const TcVec *begin, const TcVec *end,
                                    const TcVec *spread) {
@@ -134,7 +144,7 @@ TC_NOINLINE void tc_emission_parts(const unsigned on, const TcGatherJob *job, Tc
     if (on & TC_BOUND)
       tc_emission_move(e, mask, part, done, to, *spread * fraction);
     if (tc_any(tc_and(mask, piece->filled))) {
-      if (++e->parts == 64)
+      if (++e->block_parts == 64)
         tc_emission_end_block(on, e);
       tc_emission_part(on, e, (TcReal)job->tolerance.thin, mask, tc_select(mask, part, zero),
                        tc_select(mask, done, piece->from), tc_select(mask, to, piece->from));
@@ -158,8 +168,8 @@ TC_NOINLINE void tc_emission_parts(const unsigned on, const TcGatherJob *job, Tc
 TC_INLINE void tc_emission_stretch(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask,
                                    TcVec whole_length, TcVec s0, TcVec s1, TcVec spread) {
   TcLanePieces *piece = &e->piece;
-  mask = tc_and(mask, tc_and(tc_eq(s0, s0),
-                             tc_eq(s1, s1))); /* NaN is transparent: two faces have all four vertices between them */
+  /* A cell with a NaN at any vertex is transparent; its two faces have all four vertices between them. */
+  mask = tc_and(mask, tc_and(tc_eq(s0, s0), tc_eq(s1, s1)));
   const TcVec least = tc_min(s0, s1), most = tc_max(s0, s1);
   const TcMask here = tc_and(tc_and(tc_le(piece->low, least), tc_lt(least, piece->high)), tc_le(most, piece->high));
   if (on & TC_CELLS) {
@@ -333,8 +343,8 @@ TC_INLINE void tc_emission_enter(const TcGatherJob *job, TcEmission *e, TcMask m
   }
 }
 
-/* Lanes that are complete: beyond the tolerance's depth, or so deep that what is left changes no channel by half a unit
- * in the last place. */
+/* The lanes that are complete: those whose optical depth is beyond the tolerance's, or so large that whatever follows
+ * changes no channel by half a unit in the last place. */
 TC_INLINE TcMask tc_emission_complete(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask active,
                                       int64_t steps) {
   if (TC_UNLIKELY(steps % 64 == 0))
@@ -361,7 +371,7 @@ TC_INLINE TcMask tc_emission_complete(const unsigned on, const TcGatherJob *job,
 #endif
 }
 
-/* Red, green, blue, alpha. */
+/* The sums are red, green, blue, alpha. */
 TC_INLINE void tc_emission_end(const unsigned on, const TcGatherJob *job, TcEmission *e, const TcEnding *ending,
                                double (*sums)[TC_LANES]) {
   tc_emission_end_block(on, e);

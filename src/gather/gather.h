@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The gatherers that there are. Which of them is meant is a constant wherever kernels use it. */
+/* All gatherers, and a call of each function of the seam that takes the gatherer's number. That is a constant wherever
+ * kernels call them, so that no choice is left in the compiled code. */
 #ifndef TC_GATHER_GATHER_H
 #define TC_GATHER_GATHER_H
 
@@ -13,7 +14,7 @@
 #include "gather/sampled.h"
 #endif
 
-/* name, type of its state */
+/* The name of each gatherer, and the type of its state. */
 #if TC_SINGLE
 #define TC_GATHERERS(GATHERER) GATHERER(emission, TcEmission) GATHERER(length, TcLength)
 #elif TC_LANES > 1
@@ -50,7 +51,7 @@ TC_INLINE void tc_gather_begin(const int which, const TcGatherJob *job, TcGather
 
 TC_INLINE void tc_gather_enter(const int which, const TcGatherJob *job, TcGather *g, TcMask mask,
                                const TcPacket *walk) {
-  (void)job, (void)g, (void)mask, (void)walk; /* not used by all */
+  (void)job, (void)g, (void)mask, (void)walk; /* not all gatherers use these */
   switch (which) {
 #define TC_GATHERER(name, type)                                                                                        \
   case TC_GATHER_##name:                                                                                               \

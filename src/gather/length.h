@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The length of rays in cells; where these overlap, each counts. */
+/* Gathers the length of rays in cells. Where cells overlap, each of them counts. */
 #ifndef TC_GATHER_LENGTH_H
 #define TC_GATHER_LENGTH_H
 
 #include "gather/seam.h"
 
 typedef struct TcLength {
-  TcVec sum, rest; /* what rounding has taken from it (Kahan) */
+  TcVec sum;
+  TcVec rest; /* what rounding has added to the sum, to be taken from the next length (Kahan) */
 } TcLength;
 
 TC_INLINE void tc_length_begin(const TcGatherJob *job, TcLength *length) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The pieces of a transfer function (transfer.h) that lanes are in, each in its own. */
+/* The pieces of a transfer function (transfer.h) in lanes, each lane in a piece of its own. */
 #ifndef TC_GATHER_PIECES_H
 #define TC_GATHER_PIECES_H
 
@@ -8,9 +8,9 @@
 
 typedef struct TcLanePieces {
   TcVec low, high, from, extinction, rise, color[3], color_rise[3], scale;
-  TcInt at, above, below;    /* the piece's number, the next ones */
-  TcMask filled;             /* lanes whose pieces have any extinction */
-  TcVec steep, beside, jump; /* double precision */
+  TcInt at, above, below;    /* the piece's number, and the numbers of the next ones */
+  TcMask filled;             /* the lanes whose pieces have any extinction */
+  TcVec steep, beside, jump; /* used in double precision only */
 } TcLanePieces;
 
 #if TC_SINGLE
@@ -21,14 +21,14 @@ typedef struct TcLanePieces {
 #define tc_piece_columns(pieces) ((pieces)->columns_f64)
 #endif
 
-/* Words `first` to first + 3 of the lanes' pieces. */
+/* Loads the words `first` to first + 3 of the lanes' pieces. */
 TC_INLINE void tc_pieces_words(const TcPieces *pieces, TcInt at, int first, TcVec word[4]) {
   const TcReal *from[TC_LANES];
   TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) from[l] = &tc_piece_rows(pieces)[TC_AT(at, l)][first];
   tc_load_records(from, word);
 }
 
-/* The pieces with the numbers `at`. */
+/* Loads the pieces with the numbers `at`. */
 TC_INLINE void tc_pieces_load(const TcPieces *pieces, TcInt at, TcLanePieces *piece) {
   TcVec word[TC_PIECE_WORDS];
 #ifdef TC_HAVE_LOOKUP
@@ -58,8 +58,8 @@ TC_INLINE void tc_pieces_load(const TcPieces *pieces, TcInt at, TcLanePieces *pi
   piece->jump = word[TC_PIECE_JUMP];
 }
 
-/* The lanes of `mask` find the pieces where `value` is, at a knot the later: from there a lane whose values fall goes
- * on to the one before at once. */
+/* Loads, in the lanes of `mask`, the pieces in which `value` lies. At a knot it is the later piece; a lane whose values
+ * fall leaves it for the earlier one with its first part, of length 0. */
 TC_NOINLINE void tc_pieces_locate(const TcPieces *pieces, TcMask mask, const TcVec *value, TcLanePieces *piece) {
   TcInt at = tc_set_int(0);
   if (pieces->count <= 32) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Emission and absorption by the integrators that others use (optics/sampled.h), one lane at a time. */
+/* Gathers emission and absorption by the integrators to compare with (optics/sampled.h). One lane only. */
 #ifndef TC_GATHER_SAMPLED_H
 #define TC_GATHER_SAMPLED_H
 

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Cells are sorted by their smallest vertex, and once more, as an index, by their second: then all faces with a given
- * smallest vertex are at hand in two places, and are brought together vertex by vertex in a table that fits the
- * innermost cache. With vertices numbered along a curve through space, that order of the cells follows the curve, too.
+/* Finds which cells meet at which faces. Cells are sorted by their smallest vertex, and an index of them by their
+ * second vertex. All faces with a given smallest vertex are then found in two places, and are matched, one smallest
+ * vertex after the other, in a hash table that fits the innermost cache. If vertices are numbered along a curve through
+ * space, the order of the cells follows the curve as well.
  *
- * Bytes per cell: the result 20, whose place the vertices of the mesh's cells have until they are sorted; records 8,
- * sorted by way of memory that is needed before or afterwards only; the sorted cells' vertices 16 and sources 4: 48 in
- * all, of which 24 stay. The caller's arrays come on top: 4 per vertex for the ranks, 20 or 36 for the volume's
- * vertices, about 6 or 7 per cell. Only a vertex at which nearly all cells meet needs more, up to 144. */
+ * Bytes per cell: 20 for the result, in whose place the vertices of the mesh's cells are until they are sorted; 8 for
+ * records, which are sorted by way of memory that is needed only before or afterwards; 16 for the sorted cells'
+ * vertices and 4 for their sources. That is 48 in all, of which 24 stay. The caller's arrays come on top: 4 per vertex
+ * for the ranks, 20 or 36 per vertex for the volume, which is about 6 or 7 per cell. Only if nearly all cells meet at
+ * one vertex, more is needed, up to 144. */
 #include "mesh/adjacency.h"
 
 #include <stdlib.h>
@@ -42,7 +44,7 @@ typedef struct Build {
 
 /* ── cells in order ── */
 
-/* Renumbers and records by smallest vertex; what has a vertex twice goes to the end. */
+/* Renumbers cells and makes records of them by their smallest vertex. Cells with a vertex twice go to the end. */
 static bool read_cells(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   Build *build = data;
@@ -145,7 +147,7 @@ static bool take_cells(void *data, int64_t begin, int64_t end, int worker) {
   return true;
 }
 
-/* Of cells with the same vertices the mesh's first stays. */
+/* Leaves out cells with the same vertices as another one. The first of them in the mesh stays. */
 static void drop_duplicates(Build *build) {
   int64_t count = 0;
   for (int64_t i = 0; i < build->cell_count; ++i) {
@@ -159,7 +161,7 @@ static void drop_duplicates(Build *build) {
 
 /* ── faces ── */
 
-/* Records by second vertex. */
+/* Makes records of cells by their second vertex. */
 static bool take_seconds(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   Build *build = data;
@@ -168,7 +170,7 @@ static bool take_seconds(void *data, int64_t begin, int64_t end, int worker) {
   return true;
 }
 
-/* No face joined to another yet. */
+/* Marks all faces as not joined to another yet. */
 static bool begin_cells(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   Build *build = data;
@@ -188,14 +190,14 @@ static uint32_t face_smallest(const Build *build, uint64_t number) {
   return build->vertices[number >> 2][(number & 3) == 0];
 }
 
-/* Its two larger vertices. */
+/* The two larger vertices of a face. */
 static uint64_t face_key(const Build *build, uint64_t number) {
   const uint32_t *v = build->vertices[number >> 2];
   const unsigned k = number & 3;
   return (uint64_t)v[k < 2 ? 2 : 1] << 32 | v[k < 3 ? 3 : 2];
 }
 
-/* Another face with the vertices of `first`, which stands for all before it. */
+/* Joins a face with `first`, an earlier face with the same vertices. */
 static void join(Build *build, uint64_t first, uint64_t number) {
   uint32_t *neighbor = neighbor_of(build, first);
   if (*neighbor == FACE_OF_ONE) {
@@ -219,9 +221,9 @@ typedef struct Table {
   struct {
     uint64_t key, number;
   } * entries;
-  uint64_t *slots; /* [2^bits]: stamp << 32 | entry; with another stamp it is empty, which spares clearing them for each
-                      vertex */
-  uint32_t stamp, count;
+  uint64_t *slots; /* [2^bits]: stamp << 32 | entry */
+  uint32_t stamp;  /* slots with another stamp are empty, so that they need not be cleared for each vertex */
+  uint32_t count;
   int bits;
 } Table;
 
@@ -294,7 +296,7 @@ static int64_t find_cell(const Build *build, uint32_t vertex) {
   return low;
 }
 
-/* All faces whose smallest vertex is in [begin, end). */
+/* Matches all faces whose smallest vertex is in [begin, end). */
 static bool link_cells(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   Build *build = data;
@@ -392,7 +394,7 @@ static TetcastStatus stopped(const Build *build, TetcastStatus status) {
                   (long long)build->mesh_cell_count);
 }
 
-/* `scratch` is memory for as much again that nothing is in. */
+/* `scratch` is unused memory of the same size. */
 static TetcastStatus sort_records(Build *build, int64_t count, void *scratch) {
   uint64_t *sorted = build->records, *other = scratch;
   const TetcastStatus status = tc_sort_records(build->context, &sorted, &other, count, (uint32_t)build->vertex_count);

@@ -27,16 +27,16 @@ typedef struct TcAdjacency {
   TcShellFace *shell;      /* [shell_count] */
   uint32_t (*vertices)[4]; /* [cell_count], ascending, if they were asked for */
   uint32_t *source;        /* [cell_count]: the mesh's cell */
-  int64_t collapsed;       /* left out: a vertex twice */
-  int64_t duplicates;      /* left out: the four vertices of an earlier cell */
-  int64_t boundary;        /* faces of one cell */
-  int64_t nonmanifold;     /* faces of three cells or more; each is a shell face of all of them */
+  int64_t collapsed;       /* the number of cells left out as they have a vertex twice */
+  int64_t duplicates;      /* the number of cells left out as an earlier cell has the same four vertices */
+  int64_t boundary;        /* the number of faces of one cell */
+  int64_t nonmanifold;     /* the number of faces of three cells or more; each is a shell face of all of them */
 } TcAdjacency;
 
-/* Which cells meet at which faces. Vertex v of the mesh is rank[v] in the result (NULL: the same), and cells are in
- * ascending order of their ascending vertices: neighbours in memory are neighbours in space when vertices are. Working
- * memory adjacency.c derives: at most 48 bytes per cell, result included. The result does not depend on the number of
- * threads. Cleared on error. */
+/* Finds which cells meet at which faces. Vertex v of the mesh is rank[v] in the result (NULL: v itself). Cells are
+ * sorted by their vertices, in ascending order: so if vertices that are neighbours in memory are neighbours in space,
+ * cells are as well. This takes at most 48 bytes per cell, result included (adjacency.c). The result does not depend on
+ * the number of threads. Cleared on error. */
 TetcastStatus tc_adjacency_build(const TetcastMesh *mesh, const uint32_t *rank, bool keep_vertices,
                                  const TetcastProgress *progress, TcAdjacency *adjacency);
 /* Frees cells and shell, leaving the vertices. */

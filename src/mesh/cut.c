@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Cuts cells into tetrahedra, twice: first only to count, then into memory of the right size. */
+/* Cuts cells into tetrahedra. This is done twice: first only to count them, then into memory of the right size. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,17 +10,17 @@
 
 enum { GRAIN = 4096, BATCH = 32 };
 
-/* What a block of cells comes to; then, where it begins. */
+/* How much a block of cells is cut into; later, where the block's part of the result begins. */
 typedef struct Block {
   int64_t tetrahedra, centres, entries;
   TetcastCutInfo info;
 } Block;
 
-/* Memory for one cell; every array has `room`, but p one more. */
+/* Memory for one cell. Every array has room for `room` elements, tets.p for one more. */
 typedef struct Scratch {
   int64_t room;
   void *memory;
-  TcTets pieces;
+  TcTets tets;
   uint32_t *node;                 /* the cell's nodes, as listed */
   uint32_t *size, *corner, *link; /* of a polyhedron */
   bool *turned;
@@ -42,7 +42,7 @@ typedef struct Cutter {
       *ways; /* [cell_count]: 1 + that of a hexahedron that the table cuts, found the first time; 0: any other cell */
   TetcastCut *cut;
   atomic_llong first_bad;
-  bool writes; /* the second time */
+  bool writes; /* whether this is the second time */
 } Cutter;
 
 /* A cell as loaded. */
@@ -63,9 +63,9 @@ static bool reserve(Cutter *cutter, Scratch *scratch, int64_t room) {
   if (room <= scratch->room)
     return true;
   room = room < 2 * scratch->room ? 2 * scratch->room : room;
-  TcTets *pieces = &scratch->pieces;
-  const size_t each = sizeof *pieces->p + sizeof *scratch->weight + sizeof *scratch->edge + sizeof *pieces->tet +
-                      6 * sizeof(uint32_t) + 1;
+  TcTets *tets = &scratch->tets;
+  const size_t each =
+      sizeof *tets->p + sizeof *scratch->weight + sizeof *scratch->edge + sizeof *tets->tet + 6 * sizeof(uint32_t) + 1;
   tc_release(cutter->context, scratch->memory);
   scratch->room = 0;
   if (!tc_allocate_array(cutter->context, &scratch->memory, room + 1, each, "cells"))
@@ -74,11 +74,11 @@ static bool reserve(Cutter *cutter, Scratch *scratch, int64_t room) {
   const size_t n = (size_t)room + 1;
   char *at = scratch->memory; /* what needs more alignment comes first */
 #define TAKE(array) (array) = (void *)at, at += n * sizeof *(array)
-  TAKE(pieces->p);
+  TAKE(tets->p);
   TAKE(scratch->weight);
   TAKE(scratch->edge);
-  TAKE(pieces->tet);
-  TAKE(pieces->id);
+  TAKE(tets->tet);
+  TAKE(tets->id);
   TAKE(scratch->node);
   TAKE(scratch->size);
   TAKE(scratch->corner);
@@ -168,7 +168,7 @@ static int64_t place_of(const uint32_t *id, int64_t count, int64_t vertex) {
   return low < count && id[low] == vertex ? low : -1;
 }
 
-/* The faces of polyhedron i, whose nodes are in scratch->node, as a shape between its vertices in scratch->pieces.id.
+/* The faces of polyhedron i, whose nodes are in scratch->node, as a shape between its vertices in scratch->tets.id.
  */
 static Fault load_polyhedron(Cutter *cutter, int64_t i, Scratch *scratch, Cell *cell) {
   const TetcastArray *faces = &cutter->desc->faces;
@@ -190,14 +190,14 @@ static Fault load_polyhedron(Cutter *cutter, int64_t i, Scratch *scratch, Cell *
     at += size + 1;
   }
   const int64_t room = corners > cell->nodes ? corners : cell->nodes;
-  if (room > scratch->room) { /* what was read is lost */
+  if (room > scratch->room) { /* the nodes that were read are gone then, and are read again */
     int64_t first, nodes;
     find_nodes(cutter, i, &first, &nodes);
     if (!reserve(cutter, scratch, room))
       return NO_MEMORY;
     read_nodes(cutter, i, first, nodes, scratch->node);
   }
-  uint32_t *id = scratch->pieces.id, unique = 0;
+  uint32_t *id = scratch->tets.id, unique = 0;
   qsort(scratch->node, (size_t)cell->nodes, sizeof *scratch->node, compare_ids);
   for (int64_t k = 0; k < cell->nodes; ++k) {
     if (k == 0 || scratch->node[k] != id[unique - 1])
@@ -230,7 +230,7 @@ static Fault load_curved(Cutter *cutter, int64_t i, int64_t begin, Scratch *scra
   const int64_t stride = tc_array_stride(&desc->orders, 3);
   for (int k = 0; k < 3 && i < desc->orders.count; ++k)
     order[k] = tc_array_double(&desc->orders, stride, i, k);
-  /* What says nothing is not given: files have zeros for cells of a fixed order. */
+  /* Zeros count as not given: files have them for cells of a fixed order. */
   const bool given = i < desc->orders.count && order[0] >= 1;
   if (!tc_lattice_make(cell->type, cell->nodes, given ? order : NULL, desc->subdivision, &cell->lattice))
     return BAD_NODES;
@@ -257,7 +257,7 @@ static void swap_voxel(uint32_t *id) {
   }
 }
 
-/* Reads cell i: nodes of straight ones and polyhedra to scratch->pieces.id, of curved ones to scratch->node. */
+/* Reads cell i: nodes of straight ones and polyhedra to scratch->tets.id, of curved ones to scratch->node. */
 static Fault load(Cutter *cutter, int64_t i, Scratch *scratch, Cell *cell) {
   const TetcastCellsDesc *desc = cutter->desc;
   const unsigned type = type_of(cutter, i);
@@ -286,7 +286,7 @@ static Fault load(Cutter *cutter, int64_t i, Scratch *scratch, Cell *cell) {
     return fault ? fault : load_polyhedron(cutter, i, scratch, cell);
   }
   cell->shape = *tc_shape(straight[k].shape);
-  uint32_t *id = scratch->pieces.id;
+  uint32_t *id = scratch->tets.id;
   const Fault fault = read_nodes(cutter, i, begin, needed, id);
   if (type == TETCAST_CELL_VOXEL)
     swap_voxel(id);
@@ -327,10 +327,10 @@ static void position(const Cutter *cutter, uint32_t id, double p[3]) {
 static bool add_point(Cutter *cutter, const Cell *cell, const int at[3], const TcPointKey *key, Scratch *scratch) {
   const TetcastCellsDesc *desc = cutter->desc;
   const TcLattice *lattice = &cell->lattice;
-  TcPoints *points = &cutter->cut->points;
+  TcCutPoints *points = &cutter->cut->points;
   if (points->count == points->point_room || points->entries + lattice->nodes > points->entry_room) {
     const int64_t count = points->count + 1, entries = points->entries + lattice->nodes;
-    if (!tc_points_reserve(points, 2 * count, 2 * entries))
+    if (!tc_cut_points_reserve(points, 2 * count, 2 * entries))
       return false;
   }
   tc_lattice_weights(lattice, at, scratch->weight);
@@ -359,13 +359,13 @@ static bool add_point(Cutter *cutter, const Cell *cell, const int at[3], const T
   }
   for (int c = 0; c < 3; ++c)
     p[c] += first[c];
-  return tc_points_add(points, key, p, entries);
+  return tc_cut_points_add(points, key, p, entries);
 }
 
-/* One after the other: the first cell that has a point gives it its number. */
+/* Cells are looked at one after the other, as the first cell that has a point gives it its number. */
 static TetcastStatus add_lattices(Cutter *cutter) {
   Scratch *scratch = &cutter->scratch[0];
-  TcPoints *points = &cutter->cut->points;
+  TcCutPoints *points = &cutter->cut->points;
   bool curved[256];
   for (unsigned type = 0; type < 256; ++type)
     curved[type] = tc_is_curved(type);
@@ -383,7 +383,7 @@ static TetcastStatus add_lattices(Cutter *cutter) {
       if (node_at(&cell, at, scratch->node) >= 0)
         continue;
       const TcPointKey key = tc_lattice_key(&cell.lattice, at, scratch->node, i);
-      if (tc_points_find(points, &key) >= 0)
+      if (tc_cut_points_find(points, &key) >= 0)
         continue;
       if (cutter->vertex_count + points->count >= TC_MAX_COUNT) {
         return tc_error(cutter->context, TETCAST_ERROR_LIMIT, "subdividing curved cells makes more than %d vertices",
@@ -406,12 +406,12 @@ static int64_t entries_of(const Cutter *cutter, uint32_t id) {
   return start[1] - start[0];
 }
 
-static void write_centre(Cutter *cutter, const TcShape *shape, const TcTets *pieces, int64_t index, int64_t entry) {
-  TcPoints *points = &cutter->cut->points;
+static void write_centre(Cutter *cutter, const TcShape *shape, const TcTets *tets, int64_t index, int64_t entry) {
+  TcCutPoints *points = &cutter->cut->points;
   if (index > points->count)
     points->start[index] = entry; /* the first has it already, and may be looked at by others */
   for (uint32_t k = 0; k < shape->corners; ++k) {
-    const uint32_t id = pieces->id[k];
+    const uint32_t id = tets->id[k];
     if (id < cutter->vertex_count) {
       points->source[entry] = id;
       points->weight[entry++] = 1.0 / shape->corners;
@@ -440,34 +440,34 @@ static int unit_of(const Cutter *cutter, const uint32_t *id, int64_t count) {
   return exponent;
 }
 
-/* Counts or writes what pieces->id is cut into. */
-static void emit(Cutter *cutter, const TcShape *shape, TcTets *pieces, int64_t cell, Block *block) {
+/* Counts or writes what tets->id is cut into. */
+static void emit(Cutter *cutter, const TcShape *shape, TcTets *tets, int64_t cell, Block *block) {
   for (uint32_t k = 0; k < shape->corners; ++k) {
-    position(cutter, pieces->id[k], pieces->p[k]);
-    for (int c = 0; pieces->exponent && c < 3; ++c)
-      pieces->p[k][c] = ldexp(pieces->p[k][c], -pieces->exponent);
+    position(cutter, tets->id[k], tets->p[k]);
+    for (int c = 0; tets->exponent && c < 3; ++c)
+      tets->p[k][c] = ldexp(tets->p[k][c], -tets->exponent);
   }
-  tc_cut_shape(shape, pieces);
+  tc_cut_shape(shape, tets);
   int64_t entries = 0;
-  for (uint32_t k = 0; pieces->centred && k < shape->corners; ++k)
-    entries += entries_of(cutter, pieces->id[k]);
+  for (uint32_t k = 0; tets->centred && k < shape->corners; ++k)
+    entries += entries_of(cutter, tets->id[k]);
   if (cutter->writes) {
     TetcastCut *cut = cutter->cut;
-    if (pieces->centred)
-      write_centre(cutter, shape, pieces, block->centres, block->entries);
+    if (tets->centred)
+      write_centre(cutter, shape, tets, block->centres, block->entries);
     const uint32_t centre = (uint32_t)(cutter->vertex_count + block->centres);
-    for (int64_t t = 0; t < pieces->count; ++t) {
+    for (int64_t t = 0; t < tets->count; ++t) {
       int32_t *to = cut->tetrahedra[block->tetrahedra + t];
       for (int k = 0; k < 4; ++k) {
-        const uint32_t corner = pieces->tet[t][k];
-        to[k] = (int32_t)(corner < shape->corners ? pieces->id[corner] : centre);
+        const uint32_t corner = tets->tet[t][k];
+        to[k] = (int32_t)(corner < shape->corners ? tets->id[corner] : centre);
       }
       if (cut->sources)
         cut->sources[block->tetrahedra + t] = (int32_t)cell;
     }
   }
-  block->tetrahedra += pieces->count;
-  block->centres += pieces->centred;
+  block->tetrahedra += tets->count;
+  block->centres += tets->centred;
   block->entries += entries;
 }
 
@@ -483,12 +483,12 @@ typedef struct Curved {
 static void cut_part(void *user, TcShapeName name, const uint32_t *points) {
   Curved *curved = user;
   const TcShape *shape = tc_shape(name);
-  TcTets *pieces = &curved->scratch->pieces;
+  TcTets *tets = &curved->scratch->tets;
   for (uint32_t k = 0; k < shape->corners; ++k)
-    pieces->id[k] = curved->scratch->point[points[k]];
-  emit(curved->cutter, shape, pieces, curved->cell, curved->block);
-  curved->positive += pieces->positive;
-  curved->negative += pieces->negative;
+    tets->id[k] = curved->scratch->point[points[k]];
+  emit(curved->cutter, shape, tets, curved->cell, curved->block);
+  curved->positive += tets->positive;
+  curved->negative += tets->negative;
 }
 
 static void cut_curved(Cutter *cutter, const Cell *cell, Scratch *scratch, Block *block) {
@@ -501,13 +501,13 @@ static void cut_curved(Cutter *cutter, const Cell *cell, Scratch *scratch, Block
       *point = scratch->node[node];
     } else {
       const TcPointKey key = tc_lattice_key(lattice, at, scratch->node, cell->index);
-      *point = (uint32_t)(cutter->vertex_count + tc_points_find(&cutter->cut->points, &key));
+      *point = (uint32_t)(cutter->vertex_count + tc_cut_points_find(&cutter->cut->points, &key));
     }
   }
   Curved curved = {cutter, scratch, block, cell->index, 0, 0};
   tc_lattice_parts(lattice, cut_part, &curved);
-  scratch->pieces.positive = curved.positive;
-  scratch->pieces.negative = curved.negative;
+  scratch->tets.positive = curved.positive;
+  scratch->tets.negative = curved.negative;
   TetcastCutInfo *info = &block->info;
   ++info->curved;
   for (int k = 0; k < 3; ++k) {
@@ -519,13 +519,13 @@ static void cut_curved(Cutter *cutter, const Cell *cell, Scratch *scratch, Block
 
 static void cut_cell(Cutter *cutter, const Cell *cell, Scratch *scratch, Block *block) {
   const Block before = *block;
-  TcTets *pieces = &scratch->pieces;
-  pieces->exponent = cell->curved ? unit_of(cutter, scratch->node, cell->lattice.nodes)
-                                  : unit_of(cutter, pieces->id, cell->shape.corners);
+  TcTets *tets = &scratch->tets;
+  tets->exponent = cell->curved ? unit_of(cutter, scratch->node, cell->lattice.nodes)
+                                : unit_of(cutter, tets->id, cell->shape.corners);
   if (cell->curved)
     cut_curved(cutter, cell, scratch, block);
   else
-    emit(cutter, &cell->shape, pieces, cell->index, block);
+    emit(cutter, &cell->shape, tets, cell->index, block);
   if (cutter->writes)
     return;
   const TcShape *shape = cell->curved ? tc_shape(cell->lattice.shape) : &cell->shape;
@@ -533,16 +533,16 @@ static void cut_cell(Cutter *cutter, const Cell *cell, Scratch *scratch, Block *
   ++info->cells;
   info->centred += block->centres - before.centres;
   info->empty += block->tetrahedra == before.tetrahedra;
-  info->collapsed += !shape->turned && tc_has_twice(cell->curved ? scratch->node : pieces->id, shape->corners);
-  info->inverted += !shape->either_way && pieces->negative > pieces->positive;
-  info->folded += tc_is_folded(pieces->positive, pieces->negative);
+  info->collapsed += !shape->turned && tc_has_twice(cell->curved ? scratch->node : tets->id, shape->corners);
+  info->inverted += !shape->either_way && tets->negative > tets->positive;
+  info->folded += tc_is_folded(tets->positive, tets->negative);
   info->open += cell->open;
   info->oversized += cell->oversized;
 }
 
-/* ── hexahedra, of which there may be many and nothing be wrong with any ── */
+/* ── hexahedra by table: most meshes of them have no faults, so that this is all it takes ── */
 
-/* The nodes of cell i; false where something is to be told about it. */
+/* Reads the nodes of hexahedron i. False if it has a fault that has to be told. */
 static inline bool read_hexahedron(const Cutter *cutter, int64_t i, uint32_t id[8]) {
   const TetcastCellsDesc *desc = cutter->desc;
   const TetcastArray *nodes = &desc->connectivity;
@@ -579,8 +579,8 @@ static inline bool read_hexahedron(const Cutter *cutter, int64_t i, uint32_t id[
   return largest < (uint64_t)cutter->vertex_count;
 }
 
-/* Counts those of the cells [begin, end) that the table cuts. First their vertices are asked for, so that memory is
- * waited for once. */
+/* Counts the tetrahedra of those of the cells [begin, end) that the table cuts. Their vertices are all prefetched
+ * first, so that memory is waited for once. */
 static void count_hexahedra(Cutter *cutter, int64_t begin, int64_t end, Block *block) {
   uint32_t id[BATCH][8];
   int way[BATCH];
@@ -669,10 +669,10 @@ static void add_info(TetcastCutInfo *sum, const TetcastCutInfo *part) {
     sum->segments[1] = part->segments[1];
 }
 
-/* Turns the blocks' counts into where they begin, and gets the memory. */
+/* Computes from the blocks' counts where each begins, and allocates the memory. */
 static TetcastStatus lay_out(Cutter *cutter) {
   TetcastCut *cut = cutter->cut;
-  TcPoints *points = &cut->points;
+  TcCutPoints *points = &cut->points;
   Block next = {.centres = points->count, .entries = points->entries};
   for (int64_t b = 0; b * GRAIN < cutter->cell_count; ++b) {
     const Block block = cutter->blocks[b];
@@ -690,7 +690,7 @@ static TetcastStatus lay_out(Cutter *cutter) {
                     " vertices: at most %d of each can be held",
                     next.tetrahedra, cutter->vertex_count + next.centres, (int)TC_MAX_COUNT);
   }
-  if (!tc_points_reserve(points, next.centres, next.entries))
+  if (!tc_cut_points_reserve(points, next.centres, next.entries))
     return TETCAST_ERROR_MEMORY;
   points->start[next.centres] = next.entries;
   if (!tc_allocate_array(cutter->context, (void **)&cut->tetrahedra, next.tetrahedra, sizeof *cut->tetrahedra,
@@ -737,10 +737,10 @@ static TetcastStatus run(Cutter *cutter, int threads) {
     status = pass(cutter);
   if (status)
     return status; /* the lists may lack room for what was counted */
-  TcPoints *points = &cutter->cut->points;
+  TcCutPoints *points = &cutter->cut->points;
   points->count = cutter->cut->info.added_vertices;
   points->entries = points->start ? points->start[points->count] : 0;
-  tc_points_forget_keys(points);
+  tc_cut_points_forget_keys(points);
   return TETCAST_OK;
 }
 

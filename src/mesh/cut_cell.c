@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* One straight cell into tetrahedra. How a face is cut depends on the indices of its vertices alone: both its cells do
- * the same. */
+/* Cuts one straight cell into tetrahedra. How a face is cut depends only on the indices of its vertices, so that both
+ * of its cells cut it in the same way. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "mesh/cut.h"
 
-/* The share of the volume that tetrahedra may overlap by and still count as not overlapping: what rounding coordinates
- * to single precision does to flat ones. */
+/* Tetrahedra that overlap by less than this share of the volume count as not overlapping, as rounding coordinates to
+ * single precision makes flat ones overlap. */
 static const double fold_limit = 1e-6;
 
 #define SIZES(...)                                                                                                     \
@@ -90,22 +90,22 @@ static int64_t cone(const TcShape *shape, const uint32_t *id, uint32_t top, int6
   return count;
 }
 
-static void measure(TcTets *pieces) {
+static void measure(TcTets *tets) {
   double smallest = INFINITY;
-  pieces->positive = pieces->negative = 0;
-  for (int64_t i = 0; i < pieces->count; ++i) {
-    const uint32_t *t = pieces->tet[i];
-    const double *o = pieces->p[t[0]], *a = pieces->p[t[1]], *b = pieces->p[t[2]], *c = pieces->p[t[3]];
+  tets->positive = tets->negative = 0;
+  for (int64_t i = 0; i < tets->count; ++i) {
+    const uint32_t *t = tets->tet[i];
+    const double *o = tets->p[t[0]], *a = tets->p[t[1]], *b = tets->p[t[2]], *c = tets->p[t[3]];
     const double x[3] = {a[0] - o[0], a[1] - o[1], a[2] - o[2]};
     const double y[3] = {b[0] - o[0], b[1] - o[1], b[2] - o[2]};
     const double z[3] = {c[0] - o[0], c[1] - o[1], c[2] - o[2]};
     const double volume =
         (x[1] * y[2] - x[2] * y[1]) * z[0] + (x[2] * y[0] - x[0] * y[2]) * z[1] + (x[0] * y[1] - x[1] * y[0]) * z[2];
-    pieces->positive += volume > 0 ? volume : 0;
-    pieces->negative -= volume < 0 ? volume : 0;
+    tets->positive += volume > 0 ? volume : 0;
+    tets->negative -= volume < 0 ? volume : 0;
     smallest = fabs(volume) < smallest ? fabs(volume) : smallest;
   }
-  pieces->flat = smallest <= fold_limit * (pieces->positive + pieces->negative);
+  tets->flat = smallest <= fold_limit * (tets->positive + tets->negative);
 }
 
 bool tc_is_folded(double positive, double negative) {
@@ -175,53 +175,53 @@ static uint32_t smallest(const TcShape *shape, const uint32_t *id) {
   return least;
 }
 
-static void cut_from_centre(const TcShape *shape, TcTets *pieces) {
-  double *centre = pieces->p[shape->corners];
-  const double *first = pieces->p[0];
+static void cut_from_centre(const TcShape *shape, TcTets *tets) {
+  double *centre = tets->p[shape->corners];
+  const double *first = tets->p[0];
   for (int k = 0; k < 3; ++k) {
     double sum = 0;
     for (uint32_t i = 1; i < shape->corners; ++i)
-      sum += pieces->p[i][k] - first[k];
+      sum += tets->p[i][k] - first[k];
     centre[k] = first[k] + sum / shape->corners;
   }
-  pieces->centred = true;
-  pieces->count = cone(shape, pieces->id, shape->corners, -1, pieces->tet);
-  measure(pieces);
+  tets->centred = true;
+  tets->count = cone(shape, tets->id, shape->corners, -1, tets->tet);
+  measure(tets);
 }
 
-static void cut_from_corner(const TcShape *shape, uint32_t corner, TcTets *pieces) {
-  pieces->centred = false;
-  pieces->count = cone(shape, pieces->id, corner, pieces->id[corner], pieces->tet);
+static void cut_from_corner(const TcShape *shape, uint32_t corner, TcTets *tets) {
+  tets->centred = false;
+  tets->count = cone(shape, tets->id, corner, tets->id[corner], tets->tet);
   if (shape->hexahedron)
-    pieces->count = cut_corner_off(pieces->count, pieces->tet);
-  measure(pieces);
+    tets->count = cut_corner_off(tets->count, tets->tet);
+  measure(tets);
 }
 
 /* A polyhedron with several faces in a plane, or corners in a line, has flat tetrahedra at them, whose faces may be
  * without area and then those of more than two; unless it gets a vertex inside. */
-void tc_cut_shape(const TcShape *shape, TcTets *pieces) {
-  if (shape == tc_shape(TC_TETRAHEDRON)) { /* stays as it came */
+void tc_cut_shape(const TcShape *shape, TcTets *tets) {
+  if (shape == tc_shape(TC_TETRAHEDRON)) { /* it stays as it is */
     for (uint32_t k = 0; k < 4; ++k)
-      pieces->tet[0][k] = k;
-    pieces->count = tc_has_twice(pieces->id, 4) ? 0 : 1;
-    pieces->centred = false;
-    measure(pieces);
+      tets->tet[0][k] = k;
+    tets->count = tc_has_twice(tets->id, 4) ? 0 : 1;
+    tets->centred = false;
+    measure(tets);
     return;
   }
-  const uint32_t corner = smallest(shape, pieces->id);
-  cut_from_corner(shape, corner, pieces);
-  const bool folded = tc_is_folded(pieces->positive, pieces->negative);
-  if (folded || (shape->turned && pieces->flat)) {
-    const double overlap = fmin(pieces->positive, pieces->negative);
-    cut_from_centre(shape, pieces);
-    const bool better = folded ? fmin(pieces->positive, pieces->negative) < 0.5 * overlap
-                               : !pieces->flat && !tc_is_folded(pieces->positive, pieces->negative);
+  const uint32_t corner = smallest(shape, tets->id);
+  cut_from_corner(shape, corner, tets);
+  const bool folded = tc_is_folded(tets->positive, tets->negative);
+  if (folded || (shape->turned && tets->flat)) {
+    const double overlap = fmin(tets->positive, tets->negative);
+    cut_from_centre(shape, tets);
+    const bool better = folded ? fmin(tets->positive, tets->negative) < 0.5 * overlap
+                               : !tets->flat && !tc_is_folded(tets->positive, tets->negative);
     if (!better)
-      cut_from_corner(shape, corner, pieces);
+      cut_from_corner(shape, corner, tets);
   }
-  if (shape->either_way && pieces->negative > pieces->positive) {
-    for (int64_t i = 0; i < pieces->count; ++i) {
-      uint32_t *t = pieces->tet[i], swap = t[2];
+  if (shape->either_way && tets->negative > tets->positive) {
+    for (int64_t i = 0; i < tets->count; ++i) {
+      uint32_t *t = tets->tet[i], swap = t[2];
       t[2] = t[3];
       t[3] = swap;
     }

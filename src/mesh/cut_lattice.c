@@ -58,15 +58,15 @@ static int64_t whole(TcShapeName shape, const int order[3]) {
 }
 
 /* VTK has Lagrange cells of 15 and 21 nodes, whose order is the second whatever is given. */
-static bool is_centred(const TcLattice *lattice, int64_t nodes) {
+static bool has_middles(const TcLattice *lattice, int64_t nodes) {
   if (lattice->bezier)
     return false;
   return (lattice->shape == TC_TETRAHEDRON && nodes == 15) || (lattice->shape == TC_WEDGE && nodes == 21);
 }
 
 static bool find_order(TcLattice *lattice, int64_t nodes, const double given[3]) {
-  lattice->centred = is_centred(lattice, nodes);
-  if (lattice->centred) {
+  lattice->with_middles = has_middles(lattice, nodes);
+  if (lattice->with_middles) {
     for (int k = 0; k < 3; ++k)
       lattice->order[k] = 2;
     return true;
@@ -267,7 +267,7 @@ static int own_node(const TcLattice *lattice, const int at[3]) {
                    : lattice->shape == TC_WEDGE    ? wedge_node(n[0], n[2], at)
                    : lattice->shape == TC_PYRAMID  ? pyramid_node(at)
                                                    : tetrahedron_node(n[0], at);
-  if (lattice->centred && node >= 15)
+  if (lattice->with_middles && node >= 15)
     return node + 2; /* the middles of the wedge's triangles come before those of its quadrilaterals */
   return node < lattice->nodes ? node : -1;
 }
@@ -489,7 +489,7 @@ void tc_lattice_weights(const TcLattice *lattice, const int at[3], double *weigh
     if (w != 0)
       give(lattice, own, w, weight);
   }
-  if (lattice->centred)
+  if (lattice->with_middles)
     add_middles(lattice, at, weight);
 }
 

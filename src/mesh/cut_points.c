@@ -16,7 +16,7 @@ static bool move(TetcastContext *context, void **array, int64_t used, int64_t co
   return true;
 }
 
-bool tc_points_reserve(TcPoints *points, int64_t count, int64_t entries) {
+bool tc_cut_points_reserve(TcCutPoints *points, int64_t count, int64_t entries) {
   TetcastContext *context = points->context;
   if (count > points->point_room || !points->start) {
     const bool first = !points->start;
@@ -46,7 +46,7 @@ static uint64_t hash(const TcPointKey *key) {
 }
 
 /* The key's slot, or the free one where it belongs. */
-static uint32_t *slot_of(const TcPoints *points, const TcPointKey *key) {
+static uint32_t *slot_of(const TcCutPoints *points, const TcPointKey *key) {
   const uint64_t mask = (uint64_t)points->slots - 1;
   uint64_t at = hash(key) & mask;
   while (points->slot[at] && memcmp(&points->key[points->slot[at] - 1], key, sizeof *key) != 0)
@@ -54,12 +54,12 @@ static uint32_t *slot_of(const TcPoints *points, const TcPointKey *key) {
   return &points->slot[at];
 }
 
-int64_t tc_points_find(const TcPoints *points, const TcPointKey *key) {
+int64_t tc_cut_points_find(const TcCutPoints *points, const TcPointKey *key) {
   return points->slots ? (int64_t)*slot_of(points, key) - 1 : -1;
 }
 
 /* Twice as much of what is kept by key. */
-static bool grow_keys(TcPoints *points) {
+static bool grow_keys(TcCutPoints *points) {
   const int64_t slots = points->slots ? 2 * points->slots : 1024, room = slots / 2;
   if (!move(points->context, (void **)&points->p, points->count, room, sizeof *points->p) ||
       !move(points->context, (void **)&points->key, points->count, room, sizeof *points->key)) {
@@ -76,7 +76,7 @@ static bool grow_keys(TcPoints *points) {
   return true;
 }
 
-bool tc_points_add(TcPoints *points, const TcPointKey *key, const double p[3], int64_t entries) {
+bool tc_cut_points_add(TcCutPoints *points, const TcPointKey *key, const double p[3], int64_t entries) {
   if (2 * points->count >= points->slots && !grow_keys(points))
     return false;
   const int64_t i = points->count++;
@@ -88,7 +88,7 @@ bool tc_points_add(TcPoints *points, const TcPointKey *key, const double p[3], i
   return true;
 }
 
-void tc_points_forget_keys(TcPoints *points) {
+void tc_cut_points_forget_keys(TcCutPoints *points) {
   tc_release(points->context, points->p);
   tc_release(points->context, points->key);
   tc_release(points->context, points->slot);
@@ -98,10 +98,10 @@ void tc_points_forget_keys(TcPoints *points) {
   points->slots = 0;
 }
 
-void tc_points_clear(TcPoints *points) {
-  tc_points_forget_keys(points);
+void tc_cut_points_clear(TcCutPoints *points) {
+  tc_cut_points_forget_keys(points);
   tc_release(points->context, points->start);
   tc_release(points->context, points->source);
   tc_release(points->context, points->weight);
-  *points = (TcPoints){.context = points->context};
+  *points = (TcCutPoints){.context = points->context};
 }

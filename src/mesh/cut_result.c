@@ -4,7 +4,7 @@
 void tc_cut_destroy(TetcastCut *cut) {
   if (!cut)
     return;
-  tc_points_clear(&cut->points);
+  tc_cut_points_clear(&cut->points);
   tc_release(cut->context, cut->tetrahedra);
   tc_release(cut->context, cut->sources);
   tc_release(cut->context, cut);
@@ -28,7 +28,7 @@ bool tc_cut_interpolate(const TetcastCut *cut, const TetcastArray *values, int c
   if (values->count != cut->vertex_count || components < 1 || !tc_type_size(values->type))
     return false;
   const int64_t stride = tc_array_stride(values, components);
-  const TcPoints *points = &cut->points;
+  const TcCutPoints *points = &cut->points;
   for (int64_t i = 0; i < points->count; ++i) {
     const int64_t begin = points->start[i], end = points->start[i + 1];
     for (int c = 0; c < components; ++c) {

@@ -34,8 +34,8 @@ void tc_field_destroy(TetcastField *field) {
 
 enum { PIECES = 64 };
 
-/* What a piece of the values holds. Pieces are put together in their order, so that the outcome is that of one loop
- * over all. */
+/* The range of a piece of the values. Pieces are put together in their order, so that the result is that of one loop
+ * over all values. */
 typedef struct Range {
   double low, high;
   int64_t nonfinite;

@@ -9,7 +9,7 @@
 
 enum { GRAIN = 1 << 14 };
 
-/* Both checks look for the first that is wrong, whichever thread comes upon it. */
+/* Both checks name the first fault in the mesh, whichever thread finds it. */
 typedef struct Check {
   const TetcastMesh *mesh;
   atomic_llong first_bad;
@@ -72,7 +72,7 @@ static TetcastStatus report_tetrahedron(const TetcastMesh *mesh, int64_t i) {
                   mesh->vertices.count);
 }
 
-/* What is computed of coordinates, an eye that sees them all among it, stays finite up to here. */
+/* Up to here, everything that is computed from coordinates stays finite, such as a camera that sees all of them. */
 static const double largest_coordinate = 1e300;
 
 static TetcastStatus check_bounds(const TetcastMesh *mesh) {
@@ -87,7 +87,7 @@ static TetcastStatus check_bounds(const TetcastMesh *mesh) {
   return TETCAST_OK;
 }
 
-/* Of the vertices that cells name. */
+/* The bounds of the vertices that cells use. */
 static void take_bounds(TetcastMesh *mesh, const Check *check) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (int64_t i = 0; i < mesh->vertices.count; ++i) {
@@ -106,7 +106,7 @@ static void take_bounds(TetcastMesh *mesh, const Check *check) {
   }
 }
 
-/* Coordinates are finite, indices in range; takes the bounds on the way. */
+/* Checks that coordinates are finite and indices in range, and computes the bounds. */
 static TetcastStatus examine(TetcastContext *context, TetcastMesh *mesh) {
   Check check = {.mesh = mesh};
   atomic_init(&check.first_bad, INT64_MAX);

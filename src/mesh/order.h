@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Sorting by number and along a space-filling curve, in parallel; results are the same for any number of threads. */
+/* Sorts records by number, and vertices along a space-filling curve, in parallel. Results don't depend on the number of
+ * threads. */
 #ifndef TC_MESH_ORDER_H
 #define TC_MESH_ORDER_H
 
 #include "mesh/mesh.h"
 
-/* A key in the upper 32 bits, anything in the lower. */
+/* A record: a key in the upper 32 bits, a value in the lower. */
 static inline uint64_t tc_record(uint32_t key, uint32_t value) {
   return (uint64_t)key << 32 | value;
 }
@@ -16,8 +17,8 @@ static inline uint32_t tc_record_value(uint64_t record) {
   return (uint32_t)record;
 }
 
-/* Sorts *records by keys ≤ largest; those of equal keys keep their order. The two arrays of `count` may change places.
- */
+/* Sorts *records by their keys, which are ≤ largest. Records with equal keys keep their order. The two arrays, each of
+ * `count`, may change places. */
 TetcastStatus tc_sort_records(TetcastContext *context, uint64_t **records, uint64_t **scratch, int64_t count,
                               uint32_t largest);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Progress of work in several stages: what a stage reports from 0 to 1 becomes its share of the whole. */
+/* Progress of work in several stages: each stage reports from 0 to 1, which becomes its share of the whole. */
 #ifndef TC_MESH_STAGE_H
 #define TC_MESH_STAGE_H
 
@@ -16,8 +16,8 @@ static inline bool tc_stage_report(void *user, double fraction) {
   return stage->whole->function(stage->whole->user, stage->begin + fraction * (stage->end - stage->begin));
 }
 
-/* What to hand to the stage that takes the work from `begin` to `end`; NULL when nobody listens. *stage must outlive
- * the stage. */
+/* Returns the progress to hand to a stage that takes the whole from `begin` to `end`; NULL if nobody is told. *stage
+ * must outlive the stage. */
 static inline const TetcastProgress *tc_stage(TcStage *stage, const TetcastProgress *whole, double begin, double end) {
   if (!whole || !whole->function)
     return NULL;

@@ -4,8 +4,8 @@
 #include <float.h>
 #include <math.h>
 
-/* Places in a grid whose cells are four times as wide as the tolerance, by a hash. A vertex that lies alone is in the
- * list of its grid cell. */
+/* A hash table of the cells of a grid, which are four times as wide as the tolerance. Each has a list of the vertices
+ * in it that have no earlier one at their place. */
 typedef struct Grid {
   const TetcastMesh *mesh;
   double tolerance[3];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The integrators that others use, to compare with, one segment at a time. */
+/* The integrators of other programs, to compare with, one segment at a time. */
 #ifndef TC_OPTICS_SAMPLED_H
 #define TC_OPTICS_SAMPLED_H
 
@@ -31,7 +31,7 @@ static inline TcLight tc_light_begin(void) {
   return (TcLight){.transmittance = 1, .block_transmittance = 1};
 }
 
-/* Whether the light is complete: so deep that what is left changes no channel by half a unit in the last place. */
+/* Whether the light is complete: whatever follows changes no channel by half a unit in the last place. */
 bool tc_light_opaque(const TcLight *light, const TcPieces *pieces);
 
 /* Adds a segment of length > 0 of a point field with scalars s0 → s1 (finite, linear in between), or of a cell's

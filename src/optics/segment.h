@@ -20,34 +20,34 @@ typedef struct TcSegment {
 /* a, a1 ≥ 0, not NaN; values above 1e300 count as 1e300. Relative errors of w0, w1 and alpha are below 4e-15. */
 TcSegment tc_segment(double a, double a1);
 
-/* The same for T ≤ 1/2 by short polynomials: weights, alpha and transmittance are off by less than T⁵/120 in all, which
- * is less than alpha T⁴/90. */
+/* The same for T ≤ 1/2 by short polynomials. The errors of weights, alpha and transmittance add up to less than T⁵/120,
+ * which is less than alpha T⁴/90. */
 TcSegment tc_segment_thin(double a, double a1);
 
-/* The same for a = a1 = depth: no Ψ. */
+/* The same for a = a1 = depth, where Ψ isn't needed. */
 TcSegment tc_segment_constant(double depth);
 
-/* What an emission j per length that is linear on the segment, too, and given apart from the extinction, sends out of
- * it:
+/* If an emission j per length is given apart from the extinction, and is linear on the segment as well, the light that
+ * leaves the segment is
  *
  *     h ∫₀¹ ((1 − u) j₀ + u j₁) e^−τ(u) du = h (j₀ m₀ + j₁ m₁),     m₀ + m₁ = Ψ,  a m₀ + a1 m₁ = 1 − e^−T
  *
  * Without extinction m₀ = m₁ = ½, exactly. Both are integrals of something ≥ 0 and are computed without cancellation.
  */
 typedef struct TcMoments {
-  double m0, m1;        /* in [0, ½]; those below 1e-307 denormal or 0 */
+  double m0, m1;        /* in [0, ½]; moments below 1e-307 may be denormal or 0 */
   double transmittance; /* e^−T */
   double depth;         /* T */
 } TcMoments;
 
-/* Largest a of tc_segment_moments(): nothing that is computed from two of them overflows. */
+/* The largest a of tc_segment_moments(). Nothing that is computed from two such values overflows. */
 #define TC_LARGEST_DENSITY 0x1p1019
 
 /* a, a1 ≥ 0, not NaN; values above TC_LARGEST_DENSITY count as that. Relative errors of m0 and m1 are below 5e-15. */
 TcMoments tc_segment_moments(double a, double a1);
 
-/* Mills' ratio and Dawson's integral, for Ψ, then the negatives of their derivatives, for its moments (segment.c,
- * make_special.py). */
+/* Tables of Mills' ratio and of Dawson's integral, for Ψ, then of the negatives of their derivatives, for the moments
+ * (segment.c, make_special.py). */
 enum {
   TC_MILLS_ROWS = 64,
   TC_DAWSON_ROWS = 192,

@@ -24,11 +24,11 @@ TcTolerance tc_tolerance_begin(const TcPieces *pieces, double tolerance) {
   result.per_shift = 2.1 * result.color * largest_extinction(pieces);
   const double spare = tolerance - tc_rounding(1 << 14) * result.color;
   if (!(spare > 0))
-    return result; /* rounding alone may take that much */
+    return result; /* the tolerance isn't larger than rounding, so nothing is left to spend */
   /* tc_segments_thin() is off by less than T⁴/90 relative to the opacity, for T ≤ 1/2. */
   result.thin = fmin(0.5, sqrt(sqrt(90 * spare / (4.1 * result.color))));
   result.relative = result.thin * result.thin * result.thin * result.thin / 90;
-  result.opaque = fmax(0, log(2 * result.color) - log(spare)); /* more than is needed when the tolerance is above 1 */
+  result.opaque = fmax(0, log(2 * result.color) - log(spare)); /* deeper than needed if the tolerance is above 1 */
   return result;
 }
 
@@ -38,7 +38,8 @@ static const double single_rounding = 600 * 0x1p-24;
 
 bool tc_tolerance_single(const TcPieces *pieces, double tolerance, double largest, double length, TcTolerance *result,
                          double *values) {
-  const double most = 0x1p60, u = 0x1p-24; /* most: far from where numbers, or products of some of them, overflow */
+  const double most = 0x1p60; /* products of a few numbers up to this don't overflow in single precision */
+  const double u = 0x1p-24;
   if (pieces->scaled || pieces->count > 1 << 20)
     return false;
   TcTolerance half = tc_tolerance_begin(pieces, 0.5 * tolerance);
@@ -55,7 +56,7 @@ bool tc_tolerance_single(const TcPieces *pieces, double tolerance, double larges
   }
   if (!(largest < most && half.per_spread < most && half.per_shift < most && half.color < most))
     return false;
-  half.thin = -1; /* its polynomials are shorter anyway */
+  half.thin = -1; /* the polynomials of single precision are short in any case */
   half.relative = 0;
   half.rounding = single_rounding;
   half.most = fmin(tolerance, 0.09);
@@ -71,7 +72,7 @@ double tc_tolerance_bound(const TcTolerance *tolerance, double depth, bool stopp
                           double moved) {
   const double color = tolerance->color, left = stopped ? exp(-depth) * color : 0;
   if (!(moved < 0.09))
-    return color; /* no channel is off by more than what it may be */
+    return color; /* no channel's error is larger than its largest value */
   return left + moved +
          alpha * color *
              (2 * tolerance->relative / (1 - tolerance->relative) +

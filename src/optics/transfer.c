@@ -87,7 +87,7 @@ static TcOptics optics_limit(const Knots *extinction, const Knots *color, double
   return optics;
 }
 
-/* The scalars of both lists, those beyond ±limit brought there, that are distinct times 2^−exponent. */
+/* Merges the scalars of both lists of knots, clamped to ±limit; those that are equal times 2^−exponent become one. */
 static int64_t merge_knots(const Knots *a, const Knots *b, double limit, int exponent, double *merged) {
   int64_t i = 0, j = 0, n = 0;
   while (i < a->count || j < b->count) {
@@ -109,8 +109,8 @@ static bool is_empty(const TcPiece *piece) {
   return piece->at_low.extinction == 0 && piece->at_high.extinction == 0;
 }
 
-/* Where rays go from piece i, the next above or below: several pieces without extinction are passed at once. −1, count
- * + 1: none. */
+/* The number of the piece that rays go to from piece i, above or below it. Several pieces without extinction in turn
+ * are passed at once. −1 or count + 1 if there is none. */
 static int64_t next_piece(const TcPieces *pieces, int64_t i, int step) {
   const int64_t next = i + step, second = next + step;
   if (second < 0 || second > pieces->count || !is_empty(&pieces->pieces[next]) || !is_empty(&pieces->pieces[second]))
@@ -200,7 +200,7 @@ static void make_row(TcPieces *pieces, int64_t i) {
   }
 }
 
-/* What follows from the pieces as they are. */
+/* Computes what follows from the pieces. */
 static void look_at_pieces(TetcastTransferFunction *transfer) {
   TcPieces *pieces = &transfer->pieces;
   memset(pieces->largest, 0, sizeof pieces->largest);
@@ -234,7 +234,7 @@ static void look_at_pieces(TetcastTransferFunction *transfer) {
   }
 }
 
-/* In other units, and not above what is computed with. */
+/* Converts to other units, clamped to the largest extinction and colour. */
 static void scale_optics(TcOptics *optics, int length_exponent) {
   optics->extinction = fmin(ldexp(optics->extinction, length_exponent), TC_LARGEST_EXTINCTION);
   for (int k = 0; k < 3; ++k)

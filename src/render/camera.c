@@ -7,7 +7,7 @@
 
 static const double DEGREE = 0.017453292519943295;
 
-/* In units of the mesh's size: squares of distances must not overflow. */
+/* Lengths are in units of the mesh's size, so that squares of distances don't overflow. */
 #define TOO_FAR 0x1p500
 
 TetcastCamera tc_camera_default(const double bounds[6], double aspect) {

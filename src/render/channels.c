@@ -8,7 +8,7 @@ static double error_of(const TcGathered *g, int i) {
   return g->error;
 }
 
-/* A quarter is gathered, in the volume's unit of length. */
+/* Radiance is gathered in the volume's unit of length and in units of 2^emission_exponent. */
 static double radiance_of(const TcGathered *g, int i) {
   return ldexp(g->sums[3 * i], g->exponent + g->coefficients->emission_exponent);
 }

@@ -10,31 +10,31 @@
 
 enum { TC_CHANNELS = 6 };
 
-/* What a pixel's values are made from: what was gathered, as means over its samples (gather/emission.h,
- * gather/coefficients.h, gather/value.h). */
+/* What a pixel's values are made from. */
 typedef struct TcGathered {
+  /* The sums that its rays have gathered (gather/emission.h, coefficients.h, value.h), as means over its samples. */
   const double *sums;
-  const TcCoefficients *coefficients; /* NULL: a transfer function */
-  const TcPieces *colors;             /* of values, in a blend mode; NULL: none */
-  int value_exponent;                 /* of their unit */
-  bool single;                        /* colours are those of values as single precision holds them */
-  int exponent;                       /* of the volume's unit of length */
-  bool bounded;                       /* the last sum is a bound on the error of red, green, blue, alpha */
-  double error;                       /* bound on that of red, green, blue, alpha */
+  const TcCoefficients *coefficients; /* NULL with a transfer function or a blend mode */
+  const TcPieces *colors;             /* the colours of values in a blend mode; NULL without one */
+  int value_exponent;                 /* in a blend mode: values are stored times 2^−value_exponent */
+  bool single;                        /* values are rounded to single precision before they are coloured */
+  int exponent;                       /* the volume's unit of length is 2^exponent of the mesh's */
+  bool bounded;                       /* whether the last sum is a bound on the error of red, green, blue, alpha */
+  double error;                       /* a bound on the error of red, green, blue, alpha */
 } TcGathered;
 
 typedef struct TcChannel {
   TetcastChannelInfo info;
-  /* Value i of a pixel: of group i, or i = 0. */
+  /* A pixel's value of group i, or with i = 0 its only value. */
   double (*value)(const TcGathered *gathered, int i);
 } TcChannel;
 
 extern const TcChannel tc_channels[TC_CHANNELS];
 
-/* The colour of a value, times alpha, and alpha; nothing where there is no value. */
+/* The colour of a value, times alpha, and alpha. All are 0 if there is no value. */
 void tc_color_value(const TcPieces *colors, double value, double alpha, double rgba[4]);
 
-/* Red, green, blue, alpha of a pixel, and the bound on their error; NaN: not known. */
+/* Computes red, green, blue and alpha of a pixel. Returns the bound on their error, NaN if it isn't known. */
 double tc_gathered_pixel(const TcGathered *gathered, double rgba[4]);
 
 #endif

@@ -8,7 +8,9 @@
 #include "walk/queue.h"
 
 enum {
-  PACKETS = 2, /* under way at once: one's step fits into what the other's waits for */
+  /* Packets that take steps by turns: while one waits for memory, the other computes. */
+  PACKETS = 2,
+  /* Rays that are kept to be walked again in double precision. */
   AGAIN = TC_SINGLE ? 2 * TC_TILE * TC_TILE : 1
 };
 
@@ -20,14 +22,14 @@ typedef struct Packet {
   bool under_way;
 } Packet;
 
-/* All that is written again and again lies next to each other. */
+/* A worker's state. All that is written often lies next to each other in memory. */
 typedef struct State {
   Packet packet[PACKETS];
   TcQueue queue;
   TcPlaced placed;
   TcGround ground;
   TcGatherJob job;
-  TcSample again[AGAIN]; /* single precision: rays that are to be walked again */
+  TcSample again[AGAIN]; /* single precision: the rays that are to be walked again */
   int again_count;
 } State;
 
@@ -49,10 +51,11 @@ TC_INLINE TcVec spread_of(const unsigned on, const TcGround *ground, const TcPac
   return tc_madd(beside + beside, tilted, tc_madd(length, tc_set((TcReal)r->value), change * depth));
 }
 
-/* What of the cells just crossed lies beyond what was seen, and within the rays' intervals. Rounding, or a cell that is
- * turned inside out, can make a face's depth less than that of the face before: such a segment counts for nothing, and
- * the next one for what it has beyond. So lengths along a path add up to its last depth minus its first, whatever
- * happens in between. Returns the lanes whose rays end here. */
+/* Gathers the segments of the cells just crossed, as far as they lie beyond the depth that was seen already and within
+ * the rays' intervals. Rounding, or a cell that is turned inside out, can make a face's depth less than that of the
+ * face before. Such a segment counts for nothing, and of the next one only the part beyond the depth seen counts. So
+ * the lengths along a path add up to its largest depth minus its first, whatever happens in between. Returns the lanes
+ * whose rays end in these cells. */
 TC_INLINE TcMask add_segment(const int which, const unsigned on, const TcGround *ground, const TcGatherJob *job,
                              Packet *packet, TcCrossed *crossed, unsigned leaving, TcWorker *worker) {
   TcPacket *p = &packet->walk;
@@ -69,7 +72,7 @@ TC_INLINE TcMask add_segment(const int which, const unsigned on, const TcGround 
                        .partial = false};
   moved = tc_and(moved, tc_gt(z1, from));
   const TcMask behind = tc_and(moved, tc_lt(crossed->z, from));
-  if (TC_UNLIKELY(tc_any(tc_or(behind, ends)))) { /* at the eye, where the mesh folds, at the ray's end */
+  if (TC_UNLIKELY(tc_any(tc_or(behind, ends)))) { /* at the eye, where the mesh folds, or at the ray's end */
     const TcVec length = z1 - crossed->z, end = tc_min(p->rays.end, z1), change = crossed->s1 - crossed->s0;
     passage.partial = true;
     passage.from = tc_select(behind, (from - crossed->z) / length, tc_set(0));
@@ -95,9 +98,9 @@ TC_INLINE TcMask add_segment(const int which, const unsigned on, const TcGround 
   return ends;
 }
 
-/* Steps of packets until one has to be looked at: because all its lanes have ended, or one that may set out anew has.
- * Of most rays only the face where they leave is left when they end; they need not be looked at one by one, and what is
- * hard to predict is not branched on. */
+/* Lets packets take steps until one of them needs a decision: all its lanes have ended, or one has ended a path and may
+ * have another. Most rays have one path only, so that nothing needs to be decided for each when it ends: that would be
+ * a branch which the processor can't predict. */
 TC_INLINE void advance(const int which, const unsigned on, const TcGround *given_ground, const TcGatherJob *job,
                        TcWorker *worker, Packet *packet) {
   const TcGround ground = *given_ground;
@@ -143,19 +146,20 @@ TC_INLINE void advance(const int which, const unsigned on, const TcGround *given
           tc_packet_rest(&ground, p, tc_mask_of(stop));
           tc_packet_expect(&ground, p);
         }
-        halt = halt || !tc_any(p->active) || p->waiting & p->again;
+        halt = halt || !tc_any(p->active) || p->waiting & p->more_hits;
       }
     }
   }
   EACH_PACKET {
     TcPacket *p = &packet[i].walk;
-    if (p->waiting && (!tc_any(p->active) || p->waiting & p->again))
+    if (p->waiting && (!tc_any(p->active) || p->waiting & p->more_hits))
       tc_packet_arrive(ground.shell, p);
   }
 }
 
 #if TC_LANES == 1
-/* The cells of a volume that Embree holds one by one, in the order in which the ray enters them. */
+/* Walks through the cells of a volume of which Embree holds every cell (TETCAST_TRAVERSAL_FACES), in the order in which
+ * the ray enters them. */
 TC_INLINE void advance_cells(const int which, const unsigned on, const TcGround *ground, const TcGatherJob *job,
                              TcWorker *worker, Packet *packet) {
   TcPacket *p = &packet->walk;
@@ -174,7 +178,7 @@ TC_INLINE void advance_cells(const int which, const unsigned on, const TcGround 
     }
     if (on & TC_CORNERS)
       crossed.s0 = tc_cell_corner_value(ground, cell, p);
-    p->seen = tc_max(p->at.z, p->rays.begin); /* of each cell for itself: they may overlap */
+    p->seen = tc_max(p->at.z, p->rays.begin); /* each cell counts for itself, as cells may overlap */
     p->from[0] = cell;
     tc_cell_at(on, ground, p, &faces, 1);
     crossed.s1 = on & TC_CORNERS ? tc_cell_corner_value(ground, cell, p) : p->at.s;
@@ -186,7 +190,7 @@ TC_INLINE void advance_cells(const int which, const unsigned on, const TcGround 
       p->stopped = 1;
       break;
     }
-    (void)ends; /* cells behind the ray's end count for nothing */
+    (void)ends; /* the cells behind the ray's end count for nothing by themselves */
   }
   p->starting = p->active = 0;
 }
@@ -224,7 +228,7 @@ typedef void Advance(const TcGround *ground, const TcGatherJob *job, TcWorker *w
 #include "render/kernels.def"
 #undef KERNEL
 
-/* The rows of kernels.def; those that this number type does not have are empty. */
+/* The rows of kernels.def. Those that this number type does not have are empty. */
 static const struct {
   Advance *advance, *advance_cells;
   int gatherer;
@@ -247,12 +251,13 @@ static const struct {
 
 /* Where rays come from. */
 typedef struct Source {
-  bool (*next)(void *user, TcQueue *queue); /* puts the rays of a packet into the queue; false: there are no more */
-  void *user;
-  double *sums; /* where what they gather is added, [destination][job->sums] */
+  bool (*next)(void *user, TcQueue *queue); /* puts the rays of one packet into the queue; false: there are no more */
+  void *user;                               /* is given to next() */
+  double *sums;                             /* [pixel][job->sums]: where what the rays gather is added */
 } Source;
 
-/* A destination is a pixel, and in single precision the ray of it besides. */
+/* A ray's destination is the pixel that it adds to. In single precision it names the pixel's sample as well, so that
+ * the ray can be walked again. */
 #define DESTINATION(pixel, sample) ((int64_t)(sample) << 32 | (pixel))
 #define PIXEL_OF(destination)      ((destination)&UINT32_MAX)
 
@@ -271,7 +276,8 @@ static void begin_packet(const int which, const TcSurfaces *surfaces, const TcGa
   memcpy(p->destination, waiting->destination, sizeof p->destination);
   p->active = tc_none();
   p->starting = p->waiting = p->stopped = 0;
-  p->lost = waiting->doubtful;
+  p->lost = 0;
+  p->doubtful = waiting->doubtful;
   p->seen = p->rays.begin;
   p->shift = p->rays.doubt;
   p->steps = 0;
@@ -280,7 +286,7 @@ static void begin_packet(const int which, const TcSurfaces *surfaces, const TcGa
     p->next[l] = 1;
     starting |= (unsigned)(hits[l].count > 0) << l;
   }
-  p->starting = starting & p->lanes & ~p->lost;
+  p->starting = starting & p->lanes & ~p->doubtful;
   tc_gather_begin(which, job, &packet->gather);
   packet->under_way = true;
 }
@@ -297,7 +303,7 @@ static void finish_packet(const TcJob *job, State *state, TcWorker *worker, Pack
   TC_EACH_LANE {
     bool counts = p->lanes >> l & 1;
 #if TC_SINGLE
-    if (counts && (p->lost >> l & 1 || !(gathered[job->sums - 1][l] <= job->tolerance.most))) {
+    if (counts && ((p->lost | p->doubtful) >> l & 1 || !(gathered[job->sums - 1][l] <= job->tolerance.most))) {
       state->again[state->again_count++] =
           (TcSample){.pixel = PIXEL_OF(p->destination[l]), .sample = (int)(p->destination[l] >> 32)};
       counts = false;
@@ -311,7 +317,7 @@ static void finish_packet(const TcJob *job, State *state, TcWorker *worker, Pack
   packet->under_way = false;
 }
 
-/* The next packet of a source, if there is one. False: out of memory. */
+/* Begins the next packet of a source, if there is one. Returns false if memory has run out. */
 static bool next_packet(const int which, State *state, const Source *source, Packet *packet) {
   TcQueue *queue = &state->queue;
   if (queue->next == queue->count) {
@@ -326,7 +332,7 @@ static bool next_packet(const int which, State *state, const Source *source, Pac
   return true;
 }
 
-/* Packets and those that wait each get lists of hits. */
+/* Gives lists of hits to the packets and to those that wait in the queue. */
 static void share_hits(State *state, TcWorker *worker) {
   for (int i = 0; i < PACKETS; ++i)
     state->packet[i].walk.hits = worker->hits + i * TC_LANES;
@@ -361,7 +367,7 @@ static State *prepare(const TcJob *job, TcWorker *worker) {
     p->active = tc_none();
     p->starting = p->waiting = 0;
     state->packet[i].under_way = false;
-    /* What is kept from packet to packet begins anew: no bit of a tile depends on the one before. */
+    /* What gatherers keep from packet to packet begins anew, so that no bit of a tile depends on the tile before. */
     memset(&state->packet[i].gather, 0, sizeof state->packet[i].gather);
 #if !TC_SINGLE
     if (job->coefficients) {
@@ -375,7 +381,7 @@ static State *prepare(const TcJob *job, TcWorker *worker) {
   return state;
 }
 
-/* All packets of a source, several at a time. */
+/* Walks all packets of a source, several at a time. Returns false if memory has run out. */
 static bool run_packets(const TcJob *job, State *state, TcWorker *worker, const Source *source) {
   const int which = rows[job->kernel].gatherer;
   const bool cells = job->shell->volume->traversal == TETCAST_TRAVERSAL_FACES;
@@ -400,8 +406,9 @@ static bool run_packets(const TcJob *job, State *state, TcWorker *worker, const 
   }
 }
 
-/* Places rays that end at `stop` (NULL: they don't), and clips them. Those that pass the volume, or of which nothing
- * counts, are left out, and gather at once what a ray does that meets nothing: of groups, a transmittance of 1. */
+/* Places rays that end at `stop` (NULL: they don't end), clips them, and leaves out those that pass by the volume or of
+ * which nothing counts. Such a ray has sums of 0; but with coefficients, each group has a transmittance of 1, which is
+ * added here. */
 static void place_rays(const TcJob *job, const TcGround *ground, const TcWide *stop, double *sums, TcPlaced *placed) {
   unsigned left_out = placed->lanes;
   tc_place(ground, placed);
@@ -422,14 +429,15 @@ static void place_rays(const TcJob *job, const TcGround *ground, const TcWide *s
 
 /* ── a tile ── */
 
-enum { PACKET_X = TC_LANES == 1 ? 1 : TC_LANES == 4 ? 2 : 4, PACKET_Y = TC_LANES / PACKET_X }; /* a packet's pixels */
+/* A packet's rays are those of PACKET_X × PACKET_Y pixels. */
+enum { PACKET_X = TC_LANES == 1 ? 1 : TC_LANES == 4 ? 2 : 4, PACKET_Y = TC_LANES / PACKET_X };
 
 typedef struct Tile {
   const TcJob *job;
   const State *state;
   TcPlaced *placed;
   int64_t x0, y0, x1, y1;
-  int64_t x, y; /* of the packet whose rays come next */
+  int64_t x, y; /* the first pixel of the packet whose rays come next */
   int sample;
   double *sums;
 } Tile;
@@ -445,7 +453,7 @@ TC_NOINLINE void find_stops(const TcJob *job, const TcWide *column, const TcWide
   }
 }
 
-/* Places the rays through places of the grid of samples, one in each lane. */
+/* Places the rays through one point of the grid of samples in each lane. */
 static void place_samples(const TcJob *job, const TcGround *ground, const TcWide *column, const TcWide *row,
                           double *sums, TcPlaced *placed) {
   TcLines *lines = &placed->lines;
@@ -491,7 +499,7 @@ static void place_next(Tile *tile) {
   if (++tile->sample < job->samples_x * job->samples_y)
     return;
   tile->sample = 0;
-  tile->y += PACKET_Y; /* so that two packets in turn fill a square, or nearly */
+  tile->y += PACKET_Y; /* downwards, as two packets then fill a square, or nearly */
   if (tile->y < tile->y1)
     return;
   tile->y = tile->y0;
@@ -501,7 +509,7 @@ static void place_next(Tile *tile) {
 static bool next_of_tile(void *user, TcQueue *queue) {
   Tile *tile = user;
   if (TC_SINGLE && tile->state->again_count > AGAIN - (PACKETS + TC_QUEUE) * TC_LANES)
-    return false; /* these first */
+    return false; /* as there is no room for more, these rays come first */
   while (!tile->placed->lanes && tile->x < tile->x1)
     place_next(tile);
   if (!tile->placed->lanes)
@@ -511,7 +519,7 @@ static bool next_of_tile(void *user, TcQueue *queue) {
 }
 
 #if TC_SINGLE
-/* Walks those rays again in double precision for which single precision would not do. */
+/* Walks the rays again, in double precision, for which single precision would not do. */
 static bool walk_again(const Tile *tile, State *state, TcWorker *worker, double *sums) {
   const TcJob *job = tile->job;
   for (int i = 0; i < state->again_count; ++i) {
@@ -555,7 +563,7 @@ static bool render_tile(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, in
   return true;
 }
 
-/* ── some rays of a picture ── */
+/* ── given rays of a picture, which are walked again ── */
 
 typedef struct Samples {
   const TcJob *job;
@@ -607,7 +615,7 @@ typedef struct Cast {
   const TcGround *ground;
   TcPlaced *placed;
   const TcLine *lines;
-  int64_t count, next; /* rays, and the first of those that have not been placed */
+  int64_t count, next; /* the number of rays, and the first that has not been placed */
   double *sums;
 } Cast;
 

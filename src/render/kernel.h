@@ -15,8 +15,8 @@
 #include "walk/surfaces.h"
 
 enum {
-  TC_TILE = 16,     /* pixels a side, at most, of what a kernel renders at once */
-  TC_HIT_LISTS = 64 /* of a worker: of packets that are walking and of those that wait */
+  TC_TILE = 16,     /* the most pixels along a side of the tile that a kernel renders at once */
+  TC_HIT_LISTS = 64 /* how many lists of hits a worker has, for rays that are walking and for those that wait */
 };
 
 /* The numbers of kernels.def's rows. */
@@ -31,67 +31,72 @@ enum {
   TC_KERNELS
 };
 
-/* What a frame is made from; the same for all workers. */
+/* What a frame is made from. It is the same for all workers. */
 typedef struct TcJob {
   int kernel;    /* TC_KERNEL_… */
   bool one_lane; /* only kernels of one lane have it */
   const TcShell *shell;
-  const TcRows *values;   /* the scalar */
-  const TcPieces *pieces; /* in the volume's units */
-  const TcScreen *screen; /* NULL: in ray space */
-  TcTolerance tolerance;
-  TcResolution resolution; /* with TC_BOUND */
-  int sums;                /* numbers that are gathered for a ray */
-  const struct TcSampler *sampler;
-  const TcCoefficients *coefficients;
-  const TcSurfaces *surfaces;         /* NULL: none */
-  TetcastBlend blend;                 /* other than composite: of values, with neither pieces nor coefficients */
-  bool to_the_end;                    /* of coefficients: all is wanted, though all groups be opaque */
-  const struct TcIsaKernels *precise; /* single precision: those in which rays are walked again, */
-  const struct TcJob *precise_job;    /* and what for */
-  const TcHalfSpace *clip;            /* [clip_count]: what lies in all of them is seen */
+  const TcRows *values;            /* the scalar; NULL with coefficients */
+  const TcPieces *pieces;          /* the transfer function, in the volume's units; NULL if only values are gathered */
+  const TcScreen *screen;          /* the projected vertices; NULL if rays are walked in ray space */
+  TcTolerance tolerance;           /* of emission and absorption */
+  TcResolution resolution;         /* with TC_BOUND: what rounding does to vertices */
+  int sums;                        /* how many numbers are gathered for a ray */
+  const struct TcSampler *sampler; /* the integrator to compare with; NULL: the exact one */
+  const TcCoefficients *coefficients; /* NULL without */
+  const TcSurfaces *surfaces;         /* isosurfaces, slices and the boundary; NULL: there are none */
+  TetcastBlend blend;                 /* if not composite, values are gathered, without pieces and coefficients */
+  bool to_the_end;                    /* of coefficients: opaque rays go on, as what lies behind is wanted too */
+  const struct TcIsaKernels *precise; /* single precision: the kernels with which rays are walked again */
+  const struct TcJob *precise_job;    /* single precision: the job with which rays are walked again */
+  const TcHalfSpace *clip;            /* [clip_count]: only what lies in all of them is seen */
   int clip_count;
   double interval_error; /* how far off the end of a ray's interval may be at a plane that it meets at right angles */
 
-  /* Of pictures: */
+  /* The following are of pictures only, not of rays that are cast one by one. */
   TcView view;
   int64_t width, height;
-  int samples_x, samples_y;
-  const TetcastArray *stop; /* [height][width]: where rays end, in the mesh's unit; NULL: they don't */
+  int samples_x, samples_y; /* a pixel has a grid of so many rays */
+  const TetcastArray *stop; /* [height][width]: where rays end, in the mesh's unit of length; NULL: they don't */
 } TcJob;
 
-/* What a worker keeps to itself. */
+/* What each worker has for itself. */
 typedef struct TcWorker {
   TcHits hits[TC_HIT_LISTS];
-  void *state;         /* of the kernel: as many bytes as it says, aligned to 64, cleared when the worker begins */
-  void *precise_state; /* single precision: of the kernel in which rays are walked again */
-  int64_t segments, lost, again; /* cells crossed; rays lost; rays walked again */
+  void *state;         /* TcIsaKernels.state_size() bytes, aligned to 64, cleared when the worker begins */
+  void *precise_state; /* single precision: the same for the kernels with which rays are walked again */
+  int64_t segments;    /* the number of cells crossed */
+  int64_t lost;        /* the number of rays whose walk found no way out of a cell */
+  int64_t again;       /* the number of rays that were walked again */
 } TcWorker;
 
-/* A ray of a picture, and where what it gathers is added. */
+/* A ray of a picture. */
 typedef struct TcSample {
-  int64_t x, y, pixel;
-  int sample;
+  int64_t x, y;  /* its pixel in the picture */
+  int64_t pixel; /* the pixel to whose sums it adds what it gathers */
+  int sample;    /* which of the pixel's rays it is */
 } TcSample;
 
 /* The kernels of one number type and instruction set. */
 typedef struct TcIsaKernels {
-  const char *name, *precision;
+  const char *name, *precision; /* as in TetcastRenderStats */
   int lanes;
+
+  /* The number of bytes that a worker's state takes. */
   size_t (*state_size)(const TcJob *job);
 
-  /* Projects the volume's vertices [begin, end) to job->screen->vertices, `size` bytes each. */
+  /* Projects the volume's vertices [begin, end) to screen->vertices, vertex_size bytes each. */
   size_t vertex_size;
   void (*project)(const TcJob *job, TcScreen *screen, int64_t begin, int64_t end);
 
-  /* Adds what the rays of the pixels [x0, x1) × [y0, y1) gather to sums[pixel][job->sums], pixels row by row. False:
-   * out of memory. */
+  /* Adds what the rays of the pixels [x0, x1) × [y0, y1) gather to sums[pixel][job->sums], pixels row by row. This one
+   * and the next two return false if memory has run out. */
   bool (*tile)(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker, double *sums);
 
   /* Adds what the rays of samples of a picture gather to sums[sample.pixel][job->sums]. */
   bool (*samples)(const TcJob *job, const TcSample *samples, int64_t count, TcWorker *worker, double *sums);
 
-  /* Adds what any rays gather to sums[ray][job->sums], in ray space. */
+  /* Adds what rays of any kind gather to sums[ray][job->sums]. They are walked in ray space. */
   bool (*cast)(const TcJob *job, const TcLine *lines, int64_t count, TcWorker *worker, double *sums);
 } TcIsaKernels;
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pictures of scenes: which kernel makes them, where vertices are projected, tiles and workers. */
+/* Makes pictures of scenes: chooses the kernel, has vertices projected where that pays, and shares tiles among workers.
+ */
 #include <math.h>
 #include <string.h>
 
@@ -41,8 +42,8 @@ const TcIsaKernels *tc_single_kernels_for(TetcastIsa most) {
   return NULL;
 }
 
-/* The first row of a gatherer that has all of these features, and just this association; whether only kernels of one
- * lane have it. */
+/* The number of the first row of a gatherer that has all of the needed features, and among the associations only the
+ * needed one; and whether only kernels of one lane have it. */
 static int choose_row(const char *gatherer, unsigned needed, bool *one_lane) {
   static const struct {
     const char *gatherer;
@@ -64,13 +65,15 @@ static int choose_row(const char *gatherer, unsigned needed, bool *one_lane) {
       return i;
     }
   }
-  return -1; /* not with the rows there are */
+  return -1; /* kernels.def has a row for all that is asked for */
 }
 
 static unsigned association_of(const TcRows *values) {
   return values->association == TETCAST_CELL ? TC_CELLS : values->association == TETCAST_CORNER ? TC_CORNERS : 0;
 }
 
+/* Sets up a job for the scalar `values` seen through the transfer function with these pieces. `more` are further
+ * features: TC_BOUND where a bound on the error is to be gathered, TC_SURFACES. */
 static void see_through(const TcRows *values, const TcPieces *pieces, unsigned more, TcJob *job) {
   job->values = values;
   job->pieces = pieces;
@@ -90,7 +93,7 @@ void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job) {
     job->kernel = choose_row("groups", TC_WEIGHTS | TC_CELLS | measured, &job->one_lane);
     return;
   }
-  if (scene->blend) { /* of all of the volume: nothing is hidden */
+  if (scene->blend) { /* these look at all of the volume, as nothing is hidden */
     job->shell = &scene->volume->shell;
     job->values = scene->values;
     job->blend = scene->blend;
@@ -146,8 +149,8 @@ bool tc_worker_failed(const TcWorker *worker) {
 
 typedef struct Working {
   TcWorker worker;
-  double *sums; /* [TC_TILE²][job.sums] */
-  double error; /* largest bound so far */
+  double *sums; /* [TC_TILE²][job.sums]: of the tile under way */
+  double error; /* the largest of the pixels' bounds so far */
 } Working;
 
 typedef struct Render {
@@ -159,7 +162,7 @@ typedef struct Render {
   TcSurfaces surfaces;
   Working *workers;
   bool bounded; /* a bound on the error is gathered as well */
-  bool plain;   /* pixels of the frame are the sums, and there are no channels */
+  bool plain;   /* the sums are the frame's pixels as they are, and there are no channels */
   int64_t tiles_x, tiles_y;
 } Render;
 
@@ -201,7 +204,7 @@ static bool render_tile(const Render *render, int64_t tile_x, int64_t tile_y, Wo
   return true;
 }
 
-/* Every other bit of i, put together: the place along one axis of the i-th square of Morton's curve. */
+/* The number made of the bits 0, 2, 4, … of i: the place along one axis of the i-th square of Morton's curve. */
 static int64_t even_bits(int64_t i) {
   int64_t result = 0;
   for (int bit = 0; i >> 2 * bit; ++bit)
@@ -209,7 +212,8 @@ static int64_t even_bits(int64_t i) {
   return result;
 }
 
-/* Tiles follow each other along Morton's curve, so that cells that were walked through are met again soon. */
+/* Renders tiles `begin` to `end` along Morton's curve. As these are neighbours, their rays meet many of the same cells,
+ * which are still in the cache. */
 static bool render_tiles(void *data, int64_t begin, int64_t end, int worker) {
   Render *render = data;
   for (int64_t i = begin; i < end; ++i) {
@@ -222,7 +226,7 @@ static bool render_tiles(void *data, int64_t begin, int64_t end, int worker) {
   return true;
 }
 
-/* A grid of exactly `samples`, as near to square as its divisors allow, not higher than wide. */
+/* Chooses a grid of exactly `samples` points, as near to square as its divisors allow, and not higher than wide. */
 static void sample_grid(int samples, int *x, int *y) {
   *y = 1;
   for (int i = 2; i * i <= samples; ++i) {
@@ -247,9 +251,10 @@ static bool project_some(void *data, int64_t begin, int64_t end, int worker) {
   return true;
 }
 
-/* To project a vertex takes about as long as a dozen steps of a ray save by it: small pictures of large meshes, and
- * those of which little is seen, are not worth it. Most rays cross some of the cells along one edge of a cube of as
- * many. */
+/* Whether projecting all vertices once is faster than moving them into the space of each ray that meets them.
+ * Projecting one vertex takes about as long as a dozen steps of a ray become faster by it, so it doesn't pay for small
+ * pictures of large meshes, nor where little of the mesh is seen. The number of steps is estimated as if the mesh were
+ * a cube, of which each ray crosses half as many cells as ∛cell_count. */
 static bool worth_projecting(const TetcastScene *scene, int64_t rays, const TcJob *job) {
   const double cells = (double)scene->volume->cell_count, crossings = 0.5 * (double)rays * cbrt(cells);
   const double share =
@@ -257,9 +262,9 @@ static bool worth_projecting(const TetcastScene *scene, int64_t rays, const TcJo
   return share * crossings > 3 * (double)scene->volume->vertex_count;
 }
 
-/* Projects vertices; `screen` is part of the job then. Where there is no memory for it, that is told: rays in space
- * would do without, but what they see is rounded otherwise, and no bit of a picture depends on how much memory there
- * was. */
+/* Projects the vertices; the job uses `screen` from then on. It is an error if memory runs out: rays could be walked
+ * without projected vertices, but their results are rounded differently, and no bit of a picture may depend on how much
+ * memory there is. */
 static TetcastStatus project(const TetcastScene *scene, const TcIsaKernels *kernels, const TcScreen *setup, TcJob *job,
                              TcScreen *screen) {
   const bool single = kernels->vertex_size < 4 * sizeof(double);
@@ -275,6 +280,7 @@ static TetcastStatus project(const TetcastScene *scene, const TcIsaKernels *kern
   return TETCAST_OK;
 }
 
+/* Keeps the memory of projected vertices for the scene's next picture. */
 static void keep_vertices(const TetcastScene *scene, const TcJob *job, bool single) {
   if (job->screen)
     tc_release(scene->context, tc_scene_swap_vertices(scene, single, job->screen->vertices));
@@ -282,15 +288,16 @@ static void keep_vertices(const TetcastScene *scene, const TcJob *job, bool sing
 
 /* ── all of it ── */
 
-/* Single precision, where a bound on what it costs leaves enough of the tolerance. Holes of the field have borders at
- * which what is seen jumps, which the bound leaves out. */
+/* Changes the job to single precision where a bound on its error leaves enough of the tolerance; returns whether it
+ * did. The bound leaves out two things, with which single precision isn't used: the borders of holes in the field, at
+ * which what is seen jumps, and meshes that fold over themselves, where paths of rays change by leaps. */
 static bool allow_single(const TetcastScene *scene, const TetcastRenderDesc *desc, const TcScreen *setup,
                          Render *render) {
   const TcIsaKernels *kernels = tc_single_kernels_for(desc->isa);
   TcJob *job = &render->job;
   double values;
   if (!kernels || job->surfaces || !(desc->tolerance > 0) || job->values->association != TETCAST_POINT ||
-      job->values->has_holes)
+      job->values->has_holes || scene->volume->folds)
     return false;
   if (!tc_tolerance_single(job->pieces, desc->tolerance, scene->values->largest, 2 * scene->volume->radius,
                            &job->tolerance, &values))
@@ -304,6 +311,8 @@ static bool allow_single(const TetcastScene *scene, const TetcastRenderDesc *des
   return true;
 }
 
+/* Decides whether vertices are projected and which precision is used, and sets the tolerance and the error bounds'
+ * terms accordingly. */
 static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *desc, bool measured, Render *render) {
   TcJob *job = &render->job;
   TcScreen setup;
@@ -323,12 +332,12 @@ static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *de
   if (!on_screen)
     return TETCAST_OK;
   if (measured && job->pieces && allow_single(scene, desc, &setup, render)) {
-    render->precise.resolution = in_ray_space; /* where rays are walked again, which are few */
+    render->precise.resolution = in_ray_space; /* the few rays that are walked again don't use projected vertices */
   }
   return project(scene, render->kernels, &setup, job, &render->screen);
 }
 
-/* Renders with all that is needed at hand, and sums up what the workers counted. */
+/* Renders all tiles, and sums up what the workers have counted. */
 static TetcastStatus run(Render *render, const TetcastProgress *progress, TetcastRenderStats *stats) {
   TetcastContext *context = render->scene->context;
   const int threads = tc_context_threads(context);
@@ -399,7 +408,7 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   render.bounded = measured;
   render.plain = job->pieces && frame->type == TETCAST_TYPE_FLOAT64 && !measured;
   render.kernels = tc_kernels_for(one_by_one ? TETCAST_ISA_SCALAR : desc->isa);
-  status = plan(scene, desc, measured, &render); /* which may take those in single precision */
+  status = plan(scene, desc, measured, &render); /* this may change to kernels in single precision */
   TetcastRenderStats sum = {.rays = frame->width * frame->height * desc->samples,
                             .isa = render.kernels->name,
                             .precision = render.kernels->precision};

@@ -34,16 +34,16 @@ static inline void *tc_frame_channel(const TetcastFrame *frame, TetcastChannel c
   return NULL;
 }
 
-/* What follows from a scene's field and transfer function, made by the first frame that needs it, and memory that is
- * kept from frame to frame. */
+/* What is prepared for a scene's field and transfer function by the first frame that needs it, and memory that is kept
+ * from frame to frame. */
 typedef struct TcPrepared {
   pthread_mutex_t mutex;
   bool ready;
-  TetcastTransferFunction *scaled; /* in the volume's units */
-  TcShell shell;                   /* of what can be seen */
-  TetcastIsosurface *isosurfaces;  /* the scene's, as its field is stored; NULL: there are none */
+  TetcastTransferFunction *scaled; /* the transfer function in the volume's units */
+  TcShell shell;                   /* the shell of what can be seen */
+  TetcastIsosurface *isosurfaces;  /* the scene's isosurfaces, as its field is stored; NULL: there are none */
   TcGradients gradients;           /* of the field, once a smooth surface was lit */
-  void *vertices[2];               /* projected, in double and in single precision; NULL: none, or in use */
+  void *vertices[2];               /* for projected vertices in double and in single precision; NULL: none, or in use */
 } TcPrepared;
 
 struct TetcastScene {
@@ -93,9 +93,10 @@ TetcastStatus tc_scene_surfaces(const TetcastScene *scene, TcSurfaces *surfaces)
 void tc_scene_forget(TetcastScene *scene);
 TetcastStatus tc_scene_set_coefficients(TetcastScene *scene, const TetcastCoefficientsDesc *desc);
 TetcastStatus tc_scene_set_clip(TetcastScene *scene, const TetcastHalfSpace *half_spaces, int count);
-/* Makes what follows from field and transfer function, if that was not done. */
+/* Prepares the scene for its field and transfer function, unless that has been done. */
 TetcastStatus tc_scene_prepare(const TetcastScene *scene);
-/* Takes the memory of projected vertices that the scene keeps, or gives it back; what was there before, or NULL. */
+/* Takes the memory for projected vertices that the scene keeps (`vertices` NULL), or gives it back. Returns what the
+ * scene had before, or NULL. */
 void *tc_scene_swap_vertices(const TetcastScene *scene, bool single, void *vertices);
 
 TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
@@ -106,16 +107,16 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
 TetcastStatus tc_scene_preset(const TetcastScene *scene, const char *name, double low, double high,
                               TetcastTransferFunction **transfer);
 
-/* What a kernel needs of the scene besides rays: the shell, the field, the transfer function, coefficients or blend
- * mode; `bound`: the error is wanted. */
+/* Sets what a kernel needs to know of the scene: the shell, the field, the transfer function, coefficients or blend
+ * mode. `bound` tells whether a bound on the error is wanted. */
 void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job);
-/* The same of a volume, all of it, with a transfer function in its units. */
+/* The same for a volume without a scene, of which everything is visible, and a transfer function in its units. */
 void tc_job_of(const TetcastVolume *volume, const TcRows *values, const TcPieces *pieces, TcJob *job);
-/* The kernels of the widest vectors that this processor has and that are allowed; those in single precision, NULL if
- * there are none. */
+/* The kernels in double precision for the largest instruction set that this processor has and that `most` allows. */
 const TcIsaKernels *tc_kernels_for(TetcastIsa most);
+/* The same in single precision; NULL if there are none. */
 const TcIsaKernels *tc_single_kernels_for(TetcastIsa most);
-/* Memory and counters of a worker; false: out of memory. */
+/* Allocates a worker's memory and clears its counters. False if memory has run out. */
 bool tc_worker_begin(TetcastContext *context, const TcIsaKernels *kernels, const TcJob *job, TcWorker *worker);
 void tc_worker_end(TetcastContext *context, TcWorker *worker);
 /* Whether a list of hits ran out of memory. */

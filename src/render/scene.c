@@ -13,7 +13,7 @@ TetcastStatus tc_scene_create(TetcastContext *context, const TetcastVolume *volu
     return TETCAST_ERROR_MEMORY;
   }
   memset(prepared, 0, sizeof *prepared);
-  pthread_mutex_init(&prepared->mutex, NULL); /* which can't fail with default attributes */
+  pthread_mutex_init(&prepared->mutex, NULL); /* with default attributes this can't fail */
   *scene = (TetcastScene){.context = context, .volume = volume, .prepared = prepared};
   const TetcastShadingDesc shading = tetcast_shading_desc_default();
   scene->lighting = tc_lighting_of(&shading);
@@ -21,6 +21,7 @@ TetcastStatus tc_scene_create(TetcastContext *context, const TetcastVolume *volu
   return TETCAST_OK;
 }
 
+/* Frees what was prepared for the field, the transfer function and the isosurfaces, as one of them changes. */
 static void forget(TetcastContext *context, TcPrepared *prepared) {
   tc_release(context, prepared->isosurfaces);
   prepared->isosurfaces = NULL;
@@ -53,8 +54,8 @@ static TetcastStatus scale_transfer(const TetcastScene *scene, TetcastTransferFu
   return status;
 }
 
-/* Calls for one scene may come at the same time: one of them does the work. None is under way that uses what is
- * replaced, as neither field nor transfer function change while the scene renders. */
+/* Several threads may call this for one scene at the same time: the first does the work, the others wait for it. What
+ * is freed here is not in use, as neither field nor transfer function may change while the scene renders. */
 TetcastStatus tc_scene_prepare(const TetcastScene *scene) {
   TcPrepared *prepared = scene->prepared;
   TetcastStatus status = TETCAST_OK;
@@ -101,6 +102,7 @@ void tc_scene_destroy(TetcastScene *scene) {
   tc_release(scene->context, scene);
 }
 
+/* Makes `rows` the scene's scalar, and takes over the caller's reference to them. */
 static void bind(TetcastScene *scene, TcRows *rows) {
   forget(scene->context, scene->prepared);
   tc_gradients_clear(&scene->prepared->gradients);
@@ -121,7 +123,8 @@ void tc_scene_share_field(TetcastScene *scene, const TetcastScene *other) {
   bind(scene, other->values);
 }
 
-/* One of the two, or neither. */
+/* Makes a transfer function or coefficients the scene's own, in place of what it had. At most one of the two is given,
+ * the other is NULL. */
 static void replace(TetcastScene *scene, TetcastTransferFunction *transfer, TcCoefficients *coefficients) {
   forget(scene->context, scene->prepared);
   tc_transfer_destroy(scene->transfer);

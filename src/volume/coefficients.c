@@ -7,7 +7,7 @@
 
 #include "mesh/mesh.h"
 
-/* The checks: what a coefficient is called, where it lives. */
+/* What checks and their messages need to know of a coefficient. */
 typedef struct List {
   const char *name;
   const TetcastField *const *fields;
@@ -74,10 +74,10 @@ static int emission_exponent(const List *emission) {
   int exponent = 0;
   if (largest > 0)
     frexp(largest, &exponent);
-  return exponent < -1000 ? -1000 : exponent; /* whose inverse power is a number */
+  return exponent < -1000 ? -1000 : exponent; /* so that 2^−exponent doesn't overflow */
 }
 
-/* The fields of one association, those of extinction first, and where each went. */
+/* The fields of one association, those of extinction first, and the slot of each. */
 static TetcastStatus bind_association(const TetcastVolume *volume, const List lists[2], TetcastAssociation association,
                                       int first_slot, int *const slots[2], TcRows **rows) {
   const TetcastField *fields[2 * TETCAST_MAX_GROUPS];

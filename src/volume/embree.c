@@ -23,8 +23,9 @@
  * 2^−24 and Embree's slab test, with RTC_SCENE_FLAG_ROBUST, a few 2^−24 of lengths ≤ 8. */
 #define MARGIN 0x1p-18
 
-/* What the caller counts goes to Embree in pairs: neighbours in number are neighbours in space. It halves the time and
- * the memory that building takes; queries find somewhat more that is not met, 2 to 4 % of a frame. */
+/* Embree is given the caller's primitives in pairs, as neighbours in number are neighbours in space. That halves the
+ * time and the memory that building takes. Queries find more candidates that aren't met, which costs 2 to 4 % of a
+ * frame. */
 enum { PAIR = 2 };
 
 /* From so many of the caller's primitives on, several threads build. */
@@ -39,7 +40,7 @@ struct TcEmbree {
   const void *user;
   uint32_t count;
   atomic_llong bytes;
-  atomic_int error; /* of building */
+  atomic_int error; /* Embree's error while building */
 };
 
 typedef struct Query {
@@ -49,7 +50,7 @@ typedef struct Query {
   struct RTCIntersectContext context;
 #endif
   TcCandidateFunction *candidate;
-  TcPacketCandidateFunction *packet_candidate; /* instead, for packets */
+  TcPacketCandidateFunction *packet_candidate; /* called in its place for packets */
   void *query;
 } Query;
 
@@ -114,8 +115,8 @@ static bool memory_monitor(void *user, ssize_t bytes, bool post) {
 
 /* ── building ── */
 
-/* Reading an error forgets it. What Embree notes it in, of each thread, is made at the first reading: not only when
- * memory is short, where Embree would end the process. */
+/* Reads Embree's error of this thread, which also clears it. Embree allocates the place where it notes a thread's
+ * errors at the first reading. This must not happen when memory is short, as Embree would end the process. */
 static enum RTCError take_error(RTCDevice device) {
   return rtcGetDeviceError(device);
 }
@@ -157,8 +158,8 @@ static TetcastStatus make_scene(TcEmbree *embree) {
   return report(embree->context, take_error(embree->device));
 }
 
-/* Threads that may build: no more than TBB counts processors, so that each finds a place, and one where there is little
- * to do. */
+/* How many threads build: no more than TBB counts processors, so that each finds a place in its arena, and only one if
+ * there is little to do. */
 static int builders(const TcEmbree *embree) {
   int threads = tc_context_threads(embree->context), processors = 1;
   cpu_set_t set;
@@ -238,7 +239,8 @@ size_t tc_embree_bytes(const TcEmbree *embree) {
   return bytes > 0 ? (size_t)bytes : 0;
 }
 
-/* Where a ray starts: where its line is nearest to the centre, then two radii back, beyond the sphere. */
+/* The start of a ray for Embree: the point of its line that is nearest to the centre, moved back by two radii, out of
+ * the sphere. */
 static void start_of(const TcEmbree *embree, const double from_center[3], const double direction[3], float start[3]) {
   double p[3], along = 0;
   for (int k = 0; k < 3; ++k) {

@@ -56,7 +56,8 @@ static double kept(const Take *take, double value) {
   return take->clamp ? fmax(-TC_LARGEST_VALUE, fmin(value, TC_LARGEST_VALUE)) : value * take->scale;
 }
 
-/* Corners: four values of the mesh's cell, in the order of its vertices here. */
+/* Fills rows of corners from a field of corners: the four values of the mesh's cell, in the order that its vertices
+ * have in the volume. */
 static bool take_corner_rows(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   const Take *take = data;
@@ -74,7 +75,7 @@ static bool take_corner_rows(void *data, int64_t begin, int64_t end, int worker)
   return true;
 }
 
-/* Corners from a field of points, where vertices at one place have values of their own. */
+/* Fills rows of corners from a field of points, if vertices at one place have different values. */
 static bool take_vertex_corner_rows(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   const Take *take = data;
@@ -118,7 +119,7 @@ static bool take_rows(void *data, int64_t begin, int64_t end, int worker) {
   return true;
 }
 
-/* Rows with their memory, and the values in it. */
+/* Allocates rows and fills them. */
 static TetcastStatus create(const TetcastVolume *volume, Take *take, int width, TcRows **out) {
   TetcastContext *context = volume->context;
   TcRows *rows;
@@ -133,7 +134,7 @@ static TetcastStatus create(const TetcastVolume *volume, Take *take, int width, 
   for (int k = 0; k < fields; ++k)
     rows->is_double |= take->fields[k]->values.type != TETCAST_TYPE_FLOAT32;
   const size_t size = (size_t)width * (rows->is_double ? sizeof(double) : sizeof(float));
-  /* Room for one row more, for lanes that rest, and for a vector that reaches beyond the last. */
+  /* One row more, which lanes without a ray read, and room for a vector that reaches beyond the last row. */
   if (!tc_allocate_array(context, &rows->data, rows->count + 1 + 128 / (int64_t)size, size, "values of a field")) {
     tc_release(context, rows);
     return TETCAST_ERROR_MEMORY;
@@ -183,7 +184,7 @@ static bool take_ranges(void *data, int64_t begin, int64_t end, int worker) {
           extend(range, tc_rows_value(rows, vertices[i][k], 0));
       }
     }
-    /* One float further out: conversion rounds to nearest. */
+    /* Each end is moved outwards by one float, as conversion rounds to the nearest. */
     rows->range[c][0] = range[0] <= range[1] ? nextafterf((float)range[0], -INFINITY) : INFINITY;
     rows->range[c][1] = range[0] <= range[1] ? nextafterf((float)range[1], INFINITY) : -INFINITY;
   }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Fields in the order of a volume: a row of numbers for each of its vertices or cells. Scenes bind fields by them;
- * those that bind the same ones share the rows. */
+/* Fields in the order of a volume: a row of numbers for each of its vertices or cells. They are what scenes refer to;
+ * scenes of one volume that are given the same field share its rows. */
 #ifndef TC_VOLUME_ROWS_H
 #define TC_VOLUME_ROWS_H
 
@@ -8,49 +8,50 @@
 #include "volume/volume.h"
 
 /* A scalar whose values are all below 2^−TC_TINY_FIELD is stored times 2^TC_TINY_FIELD, so that interpolation does not
- * underflow; one with a value above TC_LARGEST_SCALAR times 2^−TC_HUGE_FIELD, so that it does not overflow. */
+ * underflow. One with a value above TC_LARGEST_SCALAR is stored times 2^−TC_HUGE_FIELD, so that it does not overflow.
+ */
 enum { TC_TINY_FIELD = 500, TC_HUGE_FIELD = 64 };
 
-/* Other values of larger magnitude count as this. */
+/* Values of coefficients whose magnitude is larger count as this. */
 #define TC_LARGEST_VALUE 0x1p1022
 
 typedef struct TcRows {
   const TetcastVolume *volume;
   TetcastAssociation association;
-  int width;      /* numbers in a row, one of each field */
-  bool is_double; /* or float, which they are when all fields came as that */
-  int64_t count;  /* rows: vertices or cells of the volume */
-  void *data;     /* [count][width]; what is not finite is NaN */
+  int width;      /* the length of a row: the number of fields, or 4 for a field of corners */
+  bool is_double; /* whether numbers are double; they are float if all fields came as float */
+  int64_t count;  /* the number of rows: that of the volume's vertices or cells */
+  void *data;     /* [count][width]; numbers that are not finite are stored as NaN */
 
-  /* Of a scalar that is seen through a transfer function: */
-  int exponent;      /* stored times 2^−exponent */
-  float (*range)[2]; /* [clusters]: all values of a cluster lie in it, NaN apart; (∞, −∞) if there are none but NaN.
-                        NULL: no clusters */
-  double largest;    /* of its finite magnitudes, as stored */
-  bool has_holes;    /* some are not finite */
+  /* The following are of a scalar only. */
+  int exponent;      /* values are stored times 2^−exponent */
+  float (*range)[2]; /* [clusters]: a range that contains all values of a cluster but NaN; (∞, −∞) if all are NaN. NULL
+                        if the volume has no clusters */
+  double largest; /* the largest magnitude of finite values, as stored */
+  bool has_holes; /* whether some values are not finite */
 
-  TcSharedEntry entry; /* among what scenes of the volume share */
+  TcSharedEntry entry; /* among what the volume's scenes share */
 } TcRows;
 
-/* A scalar for a transfer function. A field that may not change (TETCAST_COPY) is shared by all that ask for it. The
+/* Makes rows of one scalar. A field that can't change (TETCAST_COPY) has one copy for all who ask for it. The
  * field must have as many values as the volume's mesh had vertices or cells (TETCAST_ERROR_ARGUMENT). */
 TetcastStatus tc_rows_of_scalar(const TetcastVolume *volume, const TetcastField *field, TcRows **rows);
 
 /* Whether a field of points has different values for vertices at one place. Its rows are corners then. */
 bool tc_field_jumps(const TetcastVolume *volume, const TetcastField *field);
 
-/* `width` fields of one association next to each other, as they are. Their numbers of values have been checked, and
- * that none jumps. */
+/* Makes rows of `width` fields of one association, with their values as they are. The caller has checked their numbers
+ * of values, and that none of them jumps. */
 TetcastStatus tc_rows_of_fields(const TetcastVolume *volume, const TetcastField *const *fields, int width,
                                 TcRows **rows);
 
-/* One user more. */
+/* Counts one user more. */
 void tc_rows_retain(TcRows *rows);
 
-/* One user less; NULL does nothing. */
+/* Counts one user less, and frees the rows after the last. NULL does nothing. */
 void tc_rows_release(TcRows *rows);
 
-/* Number i of all. */
+/* Number i of all rows, one after the other. */
 static inline double tc_rows_number(const TcRows *rows, int64_t i) {
   return rows->is_double ? ((const double *)rows->data)[i] : (double)((const float *)rows->data)[i];
 }

@@ -14,7 +14,7 @@ TetcastStatus tc_shared_create(TetcastContext *context, TcShared **out) {
   if (!tc_allocate_array(context, (void **)&shared, 1, sizeof *shared, "volume"))
     return TETCAST_ERROR_MEMORY;
   *shared = (TcShared){.context = context};
-  pthread_mutex_init(&shared->mutex, NULL); /* which can't fail with default attributes */
+  pthread_mutex_init(&shared->mutex, NULL); /* with default attributes this can't fail */
   *out = shared;
   return TETCAST_OK;
 }

@@ -10,7 +10,7 @@ enum { GRAIN = 64 };
 typedef struct Build {
   const TetcastVolume *volume;
   const uint8_t *visible;
-  uint32_t *begin; /* [clusters + 1]: first face of each */
+  uint32_t *begin; /* [clusters + 1]: the first face of each cluster */
   TcShellFace *faces;
 } Build;
 
@@ -36,7 +36,8 @@ static bool is_crossed(const TetcastIsosurface *isosurfaces, int count, double l
   return below < count && isosurfaces[below].value <= high;
 }
 
-/* The faces of cluster c's cells behind which nothing can be seen. Their number; written to `faces` unless it is NULL.
+/* Finds the faces of cluster c's cells behind which nothing is visible, and writes them to `faces` unless it is NULL.
+ * Returns their number.
  */
 static uint32_t cluster_faces(const Build *build, int64_t c, TcShellFace *faces) {
   const TcAdjacency *adjacency = &build->volume->adjacency;
@@ -99,7 +100,7 @@ static TetcastStatus make_faces(Build *build, TcShell *shell) {
   }
   shell->count = total;
   if (total >= INT64_C(1) << 31)
-    return TETCAST_ERROR_LIMIT; /* the volume's own will do */
+    return TETCAST_ERROR_LIMIT; /* the volume's own shell is used then */
   if (!tc_allocate_array(context, &shell->memory, total, sizeof *shell->faces, "visible faces"))
     return TETCAST_ERROR_MEMORY;
   shell->faces = build->faces = shell->memory;
@@ -126,7 +127,8 @@ TetcastStatus tc_shell_build(const TcRows *rows, const TcPieces *pieces, const T
                                  is_crossed(isosurfaces, isosurface_count, (double)range[0], (double)range[1]));
     count += visible[c];
   }
-  /* With more of it visible, entering again and again costs what is saved: a third visible in bands was a wash. */
+  /* With more of the volume visible, entering it again and again takes as much time as is saved: with a third visible,
+   * in bands, nothing was gained. */
   if (4 * count > clusters->count) {
     tc_release(context, visible);
     return TETCAST_OK;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The shell: the faces at which rays enter and leave what can be seen. Of a whole volume, it is the mesh's boundary;
- * where a transfer function leaves parts invisible, that of the clusters that are not. Rays then pass what is empty in
- * Embree, as in Avila, Sobierajski, Kaufman: Towards a comprehensive volume visualization system (PARC), 1992. */
+/* The shell: the faces at which rays enter and leave what can be seen. For a whole volume, it is the mesh's boundary.
+ * Where a transfer function leaves parts invisible, it is the boundary of the visible clusters. Embree then takes rays
+ * past what is empty, as in Avila, Sobierajski, Kaufman: Towards a comprehensive volume visualization system (PARC),
+ * 1992. */
 #ifndef TC_VOLUME_SHELL_H
 #define TC_VOLUME_SHELL_H
 
@@ -10,9 +11,9 @@
 #include "optics/transfer.h"
 #include "volume/rows.h"
 
-/* The faces between clusters that are visible through a transfer function, or have isosurfaces in them, and what is
- * not, with Embree over them. When
- * (nearly) all is visible, or nothing would be gained, *shell is the volume's own and owns nothing. */
+/* Makes the shell of the clusters that are visible through a transfer function or have some of the isosurfaces in them,
+ * whose values ascend, and builds Embree's hierarchy over it. If nearly all is visible, or nothing would be gained,
+ * *shell becomes the volume's own shell and owns nothing. */
 TetcastStatus tc_shell_build(const TcRows *rows, const TcPieces *pieces, const TetcastIsosurface *isosurfaces,
                              int isosurface_count, TcShell *shell);
 void tc_shell_clear(TcShell *shell);

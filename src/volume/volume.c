@@ -9,10 +9,12 @@
 #include "base/parallel.h"
 #include "mesh/order.h"
 #include "mesh/stage.h"
+#include "volume/fold.h"
 
-/* Resident: 25 bytes per cell (20, its source, and its share of a cluster), 16 or 28 per vertex (the position and its
- * source), 16 per shell face and what Embree takes; a field of scenes, 4 or 8 per vertex. While preparing, 48 per cell
- * and 4 per vertex more at most (adjacency.c); Embree begins when that is given back. */
+/* A volume takes 25 bytes per cell (20 for the cell, 4 for its source, 1 for its share of a cluster), 16 or 28 per
+ * vertex (its position and its source), 16 per shell face, and what Embree allocates; a field that scenes show takes 4
+ * or 8 per vertex. Preparing it takes at most 48 bytes per cell and 4 per vertex in addition (adjacency.c), which are
+ * freed before Embree begins. */
 
 enum { GRAIN = 1 << 14 };
 
@@ -44,7 +46,7 @@ void tc_shell_bounds(const void *user, uint32_t i, double low[3], double high[3]
 typedef struct Take {
   const TetcastVolume *volume;
   const TetcastMesh *mesh;
-  double scale[2]; /* their product is the power of two to multiply with, which alone could overflow */
+  double scale[2]; /* coordinates are multiplied with both; their product could overflow */
   uint32_t *rank;
 } Take;
 
@@ -96,7 +98,7 @@ static TetcastStatus take_vertices(TetcastVolume *volume, const TetcastMesh *mes
     volume->center[k] = 0.5 * low + 0.5 * high;
     diagonal2 += (high - low) * (high - low);
   }
-  /* Coordinates are at most 1: what is added covers the rounding of the centre and of distances to it. */
+  /* Coordinates are at most 1, so what is added covers the rounding of the centre and of distances to it. */
   volume->radius = 0.5 * sqrt(diagonal2) * (1 + 0x1p-48) + 0x1p-50;
   return TETCAST_OK;
 }
@@ -160,8 +162,8 @@ static TetcastStatus shell_vertices(const TetcastVolume *volume, uint32_t **out,
   return TETCAST_OK;
 }
 
-/* Lets cells meet at vertices that lie at one place. Where all vertices are the cells' common ones, all this takes is a
- * look at those of the boundary. */
+/* Lets cells meet at vertices that lie at one place. If cells share all their vertices, this only takes a look at the
+ * vertices of the boundary. */
 static TetcastStatus join_cells(TetcastVolume *volume, Take *take) {
   uint32_t *vertices = NULL;
   int64_t count = 0;
@@ -194,7 +196,7 @@ static TetcastStatus order_corners(TetcastVolume *volume, Take *take) {
   return TETCAST_OK;
 }
 
-/* The adjacency in the numbering of volume->vertex_source. */
+/* Builds the adjacency, with vertices numbered as in volume->vertex_source. */
 static TetcastStatus take_cells(TetcastVolume *volume, const TetcastMesh *mesh, bool corners,
                                 const TetcastProgress *progress) {
   Take take = {.volume = volume, .mesh = mesh};
@@ -211,9 +213,10 @@ static TetcastStatus take_cells(TetcastVolume *volume, const TetcastMesh *mesh, 
   tc_release(volume->context, take.rank);
   if (status || !shell_only(volume))
     return status;
-  const uint32_t end = (uint32_t)adjacency->cell_count; /* a cell from which nothing leads on, for lanes that rest */
+  const uint32_t end = (uint32_t)adjacency->cell_count; /* lanes without a ray are in this cell and stay in it */
   adjacency->cells[adjacency->cell_count] = (TcCell){0, {end, end, end, end}};
   status = tc_clusters_build(volume->context, adjacency, (const uint32_t(*)[4])adjacency->vertices, &volume->clusters);
+  volume->folds = tc_adjacency_folds(adjacency, volume->positions, volume->positions_are_double);
   tc_release(volume->context, adjacency->vertices);
   adjacency->vertices = NULL;
   return status;

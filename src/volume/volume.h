@@ -10,16 +10,16 @@
 #include "volume/embree.h"
 #include "volume/shared.h"
 
-/* What rays are looked for in; made in shell.c, or the volume's own. */
+/* The shell (shell.h): the volume's own, or one made in shell.c. */
 typedef struct TcShell {
   TetcastContext *context;
   const TetcastVolume *volume;
-  const TcShellFace *faces; /* [count]; with TETCAST_TRAVERSAL_FACES none: Embree holds the cells */
-  int64_t count;
-  TcEmbree *embree;      /* over the faces or cells; NULL if there are none */
-  uint8_t *visible;      /* of each cluster; NULL: all are */
-  int64_t visible_count; /* how many clusters are, if not all */
-  void *memory;          /* of `faces`, if they are its own */
+  const TcShellFace *faces; /* [count]; NULL with TETCAST_TRAVERSAL_FACES, where Embree holds the cells */
+  int64_t count;            /* the number of faces, or of cells */
+  TcEmbree *embree;         /* over the faces or cells; NULL if there are none */
+  uint8_t *visible;         /* [clusters]: not 0 if it is visible; NULL if all are */
+  int64_t visible_count;    /* how many clusters are visible, if not all */
+  void *memory;             /* the memory of `faces`, if the shell owns it */
 } TcShell;
 
 /* Coordinates are stored times 2^−exponent, so that the largest is near 1: exact, and no unit can overflow or underflow
@@ -42,14 +42,16 @@ struct TetcastVolume {
    * there are no such vertices. */
   TcWeld *welds; /* [weld_count], of the mesh's vertices */
   int64_t weld_count;
-  uint32_t (*corner_vertices)[4]; /* [cell_count]: for each of a cell's vertices in ascending order, the mesh's vertex
-                                     that the cell has there */
+  /* [cell_count]: the mesh's vertices of each cell, in the ascending order of the volume's. */
+  uint32_t (*corner_vertices)[4];
 
-  uint8_t *corner_order; /* [cell_count]: two bits for each of a cell's vertices in ascending order, which of the mesh's
-                            it is; NULL: not asked for */
+  /* [cell_count]: for each of a cell's vertices in ascending order, two bits that tell its place among the cell's
+   * vertices in the mesh. NULL unless fields of corners were asked for. */
+  uint8_t *corner_order;
 
   TcAdjacency adjacency; /* without cells where Embree holds every cell; `vertices` of it only there */
   TcClusters clusters;   /* none where Embree holds every cell */
+  bool folds;            /* cells that share a face overlap somewhere: one of them is turned inside out */
   TcShell shell;         /* of the whole volume */
 
   TcShared *shared; /* fields in the volume's order (rows.h), which scenes share */
@@ -61,7 +63,7 @@ TetcastStatus tc_volume_create(TetcastContext *context, const TetcastMesh *mesh,
 void tc_volume_destroy(TetcastVolume *volume);
 void tc_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info);
 
-/* Bounds of face or cell i of a TcShell, for Embree. */
+/* Computes the bounds of face or cell i of a TcShell, for Embree. */
 void tc_shell_bounds(const void *shell, uint32_t i, double low[3], double high[3]);
 
 /* Coordinates of smaller magnitude, scaled, count as zero (walk/ray.h). */
@@ -71,7 +73,7 @@ static inline double tc_without_tiny(double x) {
   return x > -TC_TINY && x < TC_TINY ? 0 : x;
 }
 
-/* x, y, z scaled. */
+/* The position of a vertex, scaled. */
 static inline void tc_volume_vertex(const TetcastVolume *volume, uint32_t i, double position[3]) {
   if (volume->positions_are_double) {
     const double *p = (const double *)volume->positions + 3 * (size_t)i;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Volumes whose cells Embree holds one by one (TETCAST_TRAVERSAL_FACES): each that a ray crosses is found for itself,
- * whatever its neighbours are. One lane. */
+/* The cells that a ray crosses in volumes of which Embree holds every cell (TETCAST_TRAVERSAL_FACES). Each cell is
+ * found for itself, whatever its neighbours are. One lane only. */
 #ifndef TC_WALK_CELLS_H
 #define TC_WALK_CELLS_H
 
@@ -13,7 +13,8 @@ typedef struct TcCellFaces {
   TcCrossing at[2];
 } TcCellFaces;
 
-/* False: the ray passes the cell. It crosses none or exactly two of its faces. */
+/* Finds the two faces of a cell that the ray crosses. False if it passes by the cell; as signs are exact, it crosses
+ * either none or exactly two of its faces. */
 static bool tc_cell_faces(const unsigned on, const TcGround *ground, const TcRays *rays, uint32_t cell,
                           TcCellFaces *faces) {
   const uint32_t *vertex = ground->shell->volume->adjacency.vertices[cell];
@@ -47,7 +48,7 @@ static bool tc_cell_faces(const unsigned on, const TcGround *ground, const TcRay
   return count == 2;
 }
 
-/* The ray is at the face where it enters (0) or leaves (1). */
+/* Takes the ray to the face where it enters the cell (i = 0) or leaves it (i = 1). */
 static void tc_cell_at(const unsigned on, const TcGround *ground, TcPacket *p, const TcCellFaces *faces, int i) {
   memcpy(p->v, faces->v[i], sizeof p->v);
   memcpy(p->weight, faces->weight[i], sizeof p->weight);
@@ -56,7 +57,7 @@ static void tc_cell_at(const unsigned on, const TcGround *ground, TcPacket *p, c
     p->shift += tc_packet_shift(ground, p);
 }
 
-/* The scalar at the corners of a face, with TC_CORNERS. */
+/* With TC_CORNERS: the scalar where the ray crosses the face that it is at, interpolated between the cell's corners. */
 static TcVec tc_cell_corner_value(const TcGround *ground, uint32_t cell, const TcPacket *p) {
   const uint32_t *vertex = ground->shell->volume->adjacency.vertices[cell];
   TcVec value[3];
@@ -69,6 +70,7 @@ static TcVec tc_cell_corner_value(const TcGround *ground, uint32_t cell, const T
   return tc_weighted(p->at.barycentric, value[0], value[1], value[2]);
 }
 
+/* With TC_CORNERS: the difference between the largest and the smallest scalar of a cell. */
 static TcVec tc_cell_range(const TcGround *ground, uint32_t cell) {
   double low = INFINITY, high = -INFINITY;
   for (int k = 0; k < 4; ++k) {
@@ -78,6 +80,7 @@ static TcVec tc_cell_range(const TcGround *ground, uint32_t cell) {
   return tc_set((TcReal)(high - low));
 }
 
+/* Notes cell i as a hit of those rays of `lanes` that cross it. */
 static void tc_cell_candidate(void *user, uint32_t i, unsigned lanes) {
   const TcGround *ground = ((const TcQueue *)user)->ground;
   for (; lanes; lanes &= lanes - 1) {

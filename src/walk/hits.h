@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a ray meets in Embree. */
+/* Hits: the faces or cells that a ray meets in Embree. */
 #ifndef TC_WALK_HITS_H
 #define TC_WALK_HITS_H
 
@@ -10,7 +10,7 @@
 typedef struct TcHit {
   double begin, end;
   uint32_t id; /* of the face or cell */
-  bool done;   /* no path is to be walked from there any more */
+  bool done;   /* whether the path that begins or ends there was walked already */
 } TcHit;
 
 /* A growing list of a ray's hits. */
@@ -21,12 +21,13 @@ typedef struct TcHits {
   bool out_of_memory;
 } TcHits;
 
+/* Makes room for more. False if memory has run out, which is noted. */
 bool tc_hits_grow(TcHits *hits);
-/* By begin, end, id: the same order whatever order Embree finds them in. */
+/* Sorts by begin, end and id, so that the order doesn't depend on the order in which Embree finds hits. */
 void tc_hits_sort(TcHits *hits);
 void tc_hits_clear(TcHits *hits);
 
-/* One more, for the caller to fill; NULL: out of memory. */
+/* Appends a hit for the caller to fill. NULL if memory has run out. */
 static inline TcHit *tc_hits_append(TcHits *hits) {
   return hits->count < hits->capacity || tc_hits_grow(hits) ? &hits->data[hits->count++] : NULL;
 }

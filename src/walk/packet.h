@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The walk: from a face of the shell through cell after cell to the face of the shell where the ray leaves (shell.h),
- * for a packet of rays. The cells a ray meets form paths; each face joins at most two cells, so a path that starts at
- * the shell can't return to a cell and ends at the shell: the walk terminates on any adjacency, and every path is found
- * from either end.
+/* The walk of a packet of rays: each ray enters at a face of the shell (shell.h) and goes from cell to cell to the face
+ * of the shell where it leaves. The cells that a ray meets form paths. Each face joins at most two cells, so a path
+ * that starts at the shell can't return to a cell that it has been to, and ends at the shell. Hence the walk terminates
+ * on any adjacency, and every path can be found from either end.
  *
- * A step is a chain (which cell, which vertex, where it lies, on which side of three edges, which neighbour) that waits
- * for memory and for itself; several packets take its parts by turns. */
+ * A step is a chain in which each part needs the result of the part before: the cell names a vertex, the vertex's
+ * position decides on which side of three edges the ray passes, and these name the next cell. Each part also waits for
+ * memory. So that the processor has something to do meanwhile, several packets take their parts by turns. */
 #ifndef TC_WALK_PACKET_H
 #define TC_WALK_PACKET_H
 
@@ -15,32 +16,55 @@
 
 typedef struct TcPacket {
   TcRays rays;
-  /* The face where each ray is: its vertices, counter-clockwise around the ray, each with the cross product of the two
-   * others, > 0. */
+  /* The vertices of the face where each ray is, counter-clockwise around the ray. */
   TcLanePoints v[3];
+  /* For each of these vertices the cross product of the two others, which is > 0. */
   TcVec weight[3];
+  /* Where each ray crosses its face. */
   TcCrossing at;
-  TcVec shift;   /* with TC_BOUND: how far off the depths may be, in all, at which what is seen jumps */
-  TcVec seen;    /* the depth up to which a path has been seen */
-  TcMask active; /* lanes that are walking */
+  /* With TC_BOUND: the sum of the errors of the depths at which what is seen jumps. */
+  TcVec shift;
+  /* The depth up to which each ray has been seen. */
+  TcVec seen;
+  /* The lanes that are walking. */
+  TcMask active;
 
-  /* Of each lane, in memory for scalar instructions: */
-  _Alignas(64)
-      uint32_t cell[TC_LANES]; /* the cell ahead; the one after the last, from which nothing leads on, where none is */
-  uint32_t face[TC_LANES];     /* XOR of the face's vertices */
-  uint32_t vertex[TC_LANES];   /* the cell's vertex that is not in the face */
-  uint32_t from[TC_LANES];     /* the cell that was crossed last */
-  uint32_t exit_cell[TC_LANES], exit_face[TC_LANES]; /* where a path ended */
+  /* What follows is kept in memory for each lane, as scalar instructions work on it. */
 
-  /* Paths: bits of lanes. */
-  unsigned lanes;    /* those of rays */
-  unsigned waiting;  /* at the end of a path, until the packet is looked at */
-  unsigned starting; /* those that set out anew */
-  unsigned stopped;  /* complete before all was seen */
-  unsigned lost;     /* found no way out of a cell, which exact signs exclude */
-  unsigned again;    /* with more hits left than the one where they leave, perhaps */
-  int64_t steps, next[TC_LANES];
-  TcHits *hits; /* [TC_LANES] */
+  /* The cell ahead. Lanes that rest have the cell after the last one, from which no neighbour leads on. */
+  _Alignas(64) uint32_t cell[TC_LANES];
+  /* The XOR of the indices of the face's vertices. */
+  uint32_t face[TC_LANES];
+  /* The vertex of the cell ahead that is not in the face. */
+  uint32_t vertex[TC_LANES];
+  /* The cell that was crossed last. */
+  uint32_t from[TC_LANES];
+  /* The cell and the face at the end of the last path. */
+  uint32_t exit_cell[TC_LANES], exit_face[TC_LANES];
+
+  /* Sets of lanes, one bit each. */
+
+  /* Lanes that have a ray. */
+  unsigned lanes;
+  /* Lanes that are at the end of a path, until tc_packet_arrive() looks for their next one. */
+  unsigned waiting;
+  /* Lanes that begin a path with the next step. */
+  unsigned starting;
+  /* Lanes whose rays were complete before they had crossed everything. */
+  unsigned stopped;
+  /* Lanes that found no way out of a cell, which can't happen as signs are exact. */
+  unsigned lost;
+  /* Single precision: lanes for which rounding may have changed more than the bound allows for. */
+  unsigned doubtful;
+  /* Lanes that may have another path: they have more hits left than the one where the present path ends. */
+  unsigned more_hits;
+  /* The number of steps that the packet has made. */
+  int64_t steps;
+  /* The number of each lane's hit that comes next. */
+  int64_t next[TC_LANES];
+  /* [TC_LANES] lists of the hits at the shell. */
+  TcHits *hits;
+  /* Where what each ray gathers is added (kernel.c). */
   int64_t destination[TC_LANES];
 
   /* If there are surfaces: the rays' directions, unit vectors; the depths at which they meet slices. */
@@ -48,7 +72,7 @@ typedef struct TcPacket {
   TcVec slice[TETCAST_MAX_SLICES];
 } TcPacket;
 
-/* The lanes of `mask` rest. */
+/* Lets the lanes of `mask` rest: their steps lead from the cell after the last one to itself. */
 TC_INLINE void tc_packet_rest(const TcGround *ground, TcPacket *p, TcMask mask) {
   const TcWord end = tc_set_word((uint32_t)ground->shell->volume->cell_count), none = {0};
   tc_store_word(p->cell, tc_select_word(mask, end, tc_load_word(p->cell)));
@@ -57,15 +81,16 @@ TC_INLINE void tc_packet_rest(const TcGround *ground, TcPacket *p, TcMask mask) 
   TC_IN_MEMORY(p->face);
 }
 
-/* The lanes of `mask` forget their face: as long as they rest, steps make the XOR of its vertices anew, and what it
- * names must be a vertex. */
+/* Sets the vertices of the faces of the lanes of `mask` to vertex 0. Lanes that rest still take part in steps, which
+ * compute the XOR of these vertices and load the vertex it names: so it must be one that exists. */
 TC_INLINE void tc_packet_forget(TcPacket *p, TcMask mask) {
   const TcWord none = {0};
   for (int k = 0; k < 3; ++k)
     p->v[k].id = tc_select_word(mask, none, p->v[k].id);
 }
 
-/* Which vertex comes next, whose numbers are fetched while other things are done. */
+/* Finds which vertex comes next in each lane and has it fetched, so that it is there when the packet's next step needs
+ * it. */
 TC_INLINE void tc_packet_expect(const TcGround *ground, TcPacket *p) {
   const uint32_t *cells = (const uint32_t *)(const void *)ground->shell->volume->adjacency.cells;
   TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) {
@@ -77,7 +102,7 @@ TC_INLINE void tc_packet_expect(const TcGround *ground, TcPacket *p) {
   TC_IN_MEMORY(p->vertex);
 }
 
-/* How far off the depths at which rays cross their faces may be. */
+/* A bound on the error of the depths at which rays cross their faces. */
 TC_INLINE TcVec tc_packet_shift(const TcGround *ground, const TcPacket *p) {
   const TcVec beside =
       tc_madd(tc_set((TcReal)ground->resolution.relative), p->at.reach, tc_set((TcReal)ground->resolution.beside));
@@ -94,7 +119,7 @@ TC_NOINLINE void tc_packet_set_out(const unsigned on, const TcGround *ground, Tc
       id[k][l] = face->vertex[k];
     p->cell[l] = face->cell;
     p->face[l] = face->vertex[0] ^ face->vertex[1] ^ face->vertex[2];
-    p->again = (p->again & ~(1U << l)) | (unsigned)(p->hits[l].count - p->next[l] > 1) << l;
+    p->more_hits = (p->more_hits & ~(1U << l)) | (unsigned)(p->hits[l].count - p->next[l] > 1) << l;
   }
   TcLanePoints v[3];
   for (int k = 0; k < 3; ++k)
@@ -102,7 +127,7 @@ TC_NOINLINE void tc_packet_set_out(const unsigned on, const TcGround *ground, Tc
   TcVec e[3];
   const TcMask mask = tc_mask_of(p->starting);
   tc_edges_of(mask, v, e);
-  const TcMask turn = tc_negative(e[0]); /* clockwise: v[1] and v[2] change places */
+  const TcMask turn = tc_negative(e[0]); /* such a face is clockwise: its v[1] and v[2] change places */
   p->v[0] = tc_select_points(mask, v[0], p->v[0]);
   p->v[1] = tc_select_points(mask, tc_select_points(turn, v[2], v[1]), p->v[1]);
   p->v[2] = tc_select_points(mask, tc_select_points(turn, v[1], v[2]), p->v[2]);
@@ -110,9 +135,15 @@ TC_NOINLINE void tc_packet_set_out(const unsigned on, const TcGround *ground, Tc
   for (int k = 0; k < 3; ++k)
     p->weight[k] = tc_select(mask, weight[k], p->weight[k]);
   tc_cross_face(on, ground, &p->rays, p->v, p->weight, &p->at);
-  p->seen = tc_select(mask, tc_max(p->at.z, p->rays.begin), p->seen);
   if (on & TC_BOUND)
     p->shift += tc_select(mask, tc_packet_shift(ground, p), tc_set(0));
+#if TC_SINGLE
+  /* A path that begins before the one before has ended overlaps it. Which of two overlapping paths comes first may be a
+   * matter of rounding, and a lot depends on it. */
+  const TcMask overlaps = tc_and(tc_lt(p->rays.begin, p->seen), tc_lt(p->at.z + p->shift, p->seen));
+  p->doubtful |= tc_bits(tc_and(mask, overlaps));
+#endif
+  p->seen = tc_select(mask, tc_max(p->at.z, p->rays.begin), p->seen);
   p->active = tc_or(p->active, mask);
   p->starting = 0;
 }
@@ -128,32 +159,36 @@ TC_NOINLINE void tc_packet_corners(const TcGround *ground, const TcPacket *p, co
   }
 }
 
-/* A scalar from barycentric weights, kept within those of the vertices. */
+/* The scalar at a point with barycentric weights b, kept within the range of the vertices' scalars. */
 TC_INLINE TcVec tc_weighted(const TcVec b[3], TcVec s0, TcVec s1, TcVec s2) {
   const TcVec value = tc_madd(b[0], s0, tc_madd(b[1], s1, b[2] * s2));
   return tc_max(tc_least3(s0, s1, s2), tc_min(tc_most3(s0, s1, s2), value));
 }
 
-/* What lanes have crossed in a step: from where to where, in their cells. */
+/* The cells that lanes have crossed in a step. */
 typedef struct TcCrossed {
+  /* The lanes that have crossed a cell. */
   TcMask mask;
+  /* The depth and the scalar where they entered it, and the scalar where they left it. */
   TcVec z, s0, s1;
-  TcTilt tilt; /* of the face where they entered */
-  TcVec range; /* with TC_CORNERS: of the scalar */
-
-  /* With TC_SURFACES: the face where they entered. */
-  TcVec barycentric[3];
+  /* The tilt of the face where they entered it. */
+  TcTilt tilt;
+  /* With TC_CORNERS: the difference between the largest and the smallest scalar of the cell. */
+  TcVec range;
+  /* With TC_SURFACES: the vertices of the face where they entered it, and the weights of these there. */
   TcWord id[3];
+  TcVec barycentric[3];
 } TcCrossed;
 
-/* A step's first part: where the vertices of p->vertex lie. */
+/* A step's first part: loads the vertices p->vertex, as the rays see them. */
 TC_INLINE void tc_packet_look(const TcGround *ground, TcPacket *p, TcLanePoints *q) {
   tc_points_load(ground, &p->rays, p->vertex, q);
 }
 
-/* A step's second part: crosses the cells. Of the edges from the face's vertices to q the signs name the face through
- * which the ray leaves: that without v[k], where it passes q between the other two. Returns the lanes that found no way
- * out; *reached: the highest bit is set where a lane is at the shell. */
+/* A step's second part: crosses the cells. The ray leaves through one of the three faces at the new vertex q, and the
+ * signs of the edges from the face's vertices to q tell which: the face without v[k] is the one where the ray passes q
+ * between the other two. Returns the lanes that found no way out. The highest bit of *reached is set if any lane has
+ * reached the shell. */
 TC_INLINE TcMask tc_packet_cross(const unsigned on, const TcGround *ground, TcPacket *p, const TcLanePoints *q,
                                  TcCrossed *crossed, uint32_t *reached) {
   const uint32_t *cells = (const uint32_t *)(const void *)ground->shell->volume->adjacency.cells;
@@ -184,7 +219,8 @@ TC_INLINE TcMask tc_packet_cross(const unsigned on, const TcGround *ground, TcPa
   for (int k = 0; k < 3; ++k)
     out[k] = tc_and_not(negative[(k + 1) % 3], negative[(k + 2) % 3]);
   const TcWord left = tc_select_word(out[0], v[0].id, tc_select_word(out[1], v[1].id, v[2].id));
-  const TcWord rank = tc_rank(left, q->id, v[0].id, v[1].id, v[2].id); /* that of the neighbour */
+  /* A cell's neighbours are in the order of the vertices that they don't share. */
+  const TcWord rank = tc_rank(left, q->id, v[0].id, v[1].id, v[2].id);
   uint32_t ranks[TC_LANES], any = 0;
   tc_store_word(ranks, rank);
   tc_store_word(p->from, tc_load_word(p->cell));
@@ -213,7 +249,7 @@ TC_INLINE TcMask tc_packet_cross(const unsigned on, const TcGround *ground, TcPa
   return tc_and_not(p->active, tc_or(tc_or(out[0], out[1]), out[2]));
 }
 
-/* The lanes whose cells can't be seen. */
+/* The active lanes whose cell ahead is invisible or beyond the shell. */
 TC_NOINLINE unsigned tc_packet_invisible(const TcShell *shell, const TcPacket *p) {
   unsigned result = 0;
   for (unsigned lanes = tc_bits(p->active); lanes; lanes &= lanes - 1) {
@@ -224,7 +260,8 @@ TC_NOINLINE unsigned tc_packet_invisible(const TcShell *shell, const TcPacket *p
   return result;
 }
 
-/* A step's third part: the lanes that are at the shell rest, and are those that wait. Where others go on to. */
+/* A step's third part: lets the lanes that have reached the shell rest, and returns them; the others have their next
+ * vertex fetched. */
 TC_INLINE unsigned tc_packet_reach(const unsigned on, const TcGround *ground, TcPacket *p, uint32_t reached) {
   unsigned ended = 0;
   if (TC_UNLIKELY(ground->shell->visible != NULL))
@@ -247,7 +284,7 @@ TC_INLINE unsigned tc_packet_reach(const unsigned on, const TcGround *ground, Tc
 
 /* ── paths ── */
 
-/* Whether there is another hit from which to set out. */
+/* Whether the lane has another hit at which a path begins that was not walked yet; if so, p->next is the one after. */
 static bool tc_packet_next_start(TcPacket *p, int lane) {
   const TcHits *hits = &p->hits[lane];
   int64_t next = p->next[lane];
@@ -257,14 +294,15 @@ static bool tc_packet_next_start(TcPacket *p, int lane) {
   return next < hits->count;
 }
 
-/* Lanes that wait may set out anew: each path is walked once, from the end that comes first. */
+/* Lets the lanes that wait begin their next path, if they have one. A path has a hit at either end and is walked once,
+ * from the nearer one: so the hit where a path ended is marked as done. */
 TC_NOINLINE void tc_packet_arrive(const TcShell *shell, TcPacket *p) {
   for (; p->waiting; p->waiting &= p->waiting - 1) {
     const int l = __builtin_ctz(p->waiting);
     const TcHits *hits = &p->hits[l];
     for (int64_t j = p->next[l]; j < hits->count; ++j) {
       const TcShellFace *face = &shell->faces[hits->data[j].id];
-      /* Of one cell's faces each has another XOR. */
+      /* The cell and the XOR name the face, as the faces of one cell have different XORs. */
       const bool here =
           face->cell == p->exit_cell[l] && (face->vertex[0] ^ face->vertex[1] ^ face->vertex[2]) == p->exit_face[l];
       if (here)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Rays are set up, one in each lane: in double precision, whatever the lanes are later. */
+/* Sets up rays, one in each lane. This is done in double precision, whatever rays are walked in. */
 #ifndef TC_WALK_PLACE_H
 #define TC_WALK_PLACE_H
 
@@ -9,24 +9,25 @@
 /* Rays as they are asked for (TcLine). */
 typedef struct TcLines {
   TcWide eye[3], offset[3], direction[3], begin, end;
-  TcWide x, y; /* on the screen, in pixels, where there is one */
+  TcWide x, y; /* with projected vertices: the ray's place on the screen, in pixels from (x0, y0) (screen.h) */
 } TcLines;
 
-/* Rays set up, those of `lanes` that may meet the volume. */
+/* Rays that have been set up. */
 typedef struct TcPlaced {
   TcLines lines;
-  TcWide from_center[3];            /* of the points where they are nearest to the volume's centre */
-  TcWide near;                      /* these points' depths: distances from eye + offset */
-  TcWide begin, end;                /* the interval that counts, as depths from these points */
-  TcWide slice[TETCAST_MAX_SLICES]; /* depths from these points at which rays meet slices; NaN, infinite: nowhere */
-  TcWide shift;                     /* depth of these points, as packets count it */
-  TcWide doubt;                     /* how far off its ends may be, in all (interval.h) */
-  TcWide origin[3], rest[3];        /* in ray space: the same points, as the sum of two numbers */
-  int64_t destination[TC_LANES];
-  unsigned lanes;
+  TcWide from_center[3]; /* from the volume's centre to the point of the ray that is nearest to it */
+  TcWide near;           /* the distance of this point from eye + offset */
+  TcWide begin, end;     /* the interval that counts, as depths from this point */
+  TcWide
+      slice[TETCAST_MAX_SLICES]; /* the depths from this point at which the ray meets slices; NaN, infinite: nowhere */
+  TcWide shift;                  /* the depth of this point, as packets count it */
+  TcWide doubt;                  /* how far off the interval's ends may be, in all (interval.h) */
+  TcWide origin[3], rest[3];     /* in ray space: the same point, as the sum of these two */
+  int64_t destination[TC_LANES]; /* where what the ray gathers is added (kernel.c) */
+  unsigned lanes;                /* the lanes of rays that may meet the volume and are still to be taken */
 } TcPlaced;
 
-/* The rays of camera `view` through positions (u, v). */
+/* Sets up the rays of camera `view` through the positions (u, v) of the picture. */
 static void tc_view_lines(const TcView *view, const TcWide *u, const TcWide *v, TcLines *lines) {
   for (int k = 0; k < 3; ++k) {
     const TcWide shift = *u * view->right[k] + *v * view->up[k];
@@ -41,8 +42,8 @@ static void tc_view_lines(const TcView *view, const TcWide *u, const TcWide *v, 
     lines->direction[k] /= length;
 }
 
-/* In ray space, eye + offset + along · direction as origin + rest, to twice the precision: whatever `along` was rounded
- * to, the point is on the ray, and vertex − origin is as good as the vertex is. */
+/* In ray space: computes eye + offset + near · direction as origin + rest, to twice the precision. So the point is on
+ * the ray whatever `near` was rounded to, and vertex − origin is as exact as the vertex. */
 TC_NOINLINE void tc_place_exactly(const TetcastVolume *volume, TcPlaced *placed) {
   const TcLines *lines = &placed->lines;
   for (int k = 0; k < 3; ++k) {
@@ -61,9 +62,9 @@ TC_NOINLINE void tc_place_exactly(const TetcastVolume *volume, TcPlaced *placed)
   }
 }
 
-/* Leaves out the rays that pass the volume's sphere, or the part of which that counts does, or that are NaN; the sphere
- * has a margin that covers the rounding here. On the screen only Embree needs the points, which need not be as exact.
- */
+/* Finds the rays' points nearest to the volume's centre, and leaves out rays that pass by the volume's sphere, rays of
+ * which the interval that counts does, and rays with NaN. The sphere's radius has a margin that covers the rounding
+ * here. With projected vertices only Embree needs the points, so they need not be as exact as in ray space. */
 static void tc_place(const TcGround *ground, TcPlaced *placed) {
   const TetcastVolume *volume = ground->shell->volume;
   const TcLines *lines = &placed->lines;
@@ -85,7 +86,7 @@ static void tc_place(const TcGround *ground, TcPlaced *placed) {
   placed->lanes &= inside & tc_wide_le(placed->begin, radius) & tc_wide_le(-radius, placed->end);
 }
 
-/* Rays on the screen. */
+/* Converts rays for the walk with projected vertices. */
 static void tc_take_screen(const TcScreen *screen, TcPlaced *placed, TcRays *rays) {
   const TcLines *lines = &placed->lines;
   TcWide shift = tc_set_wide(0), along = shift; /* depth of the points that were placed, from the centre's plane */
@@ -111,7 +112,7 @@ static void tc_take_screen(const TcScreen *screen, TcPlaced *placed, TcRays *ray
 }
 
 #if !TC_SINGLE
-/* Rays in ray space, all of them along kz. */
+/* Converts rays for the walk in ray space. The largest component of all their directions is kz. */
 TC_NOINLINE void tc_take_ray_space(TcPlaced *placed, int kz, TcRays *rays) {
   const TcWide *direction = placed->lines.direction, *origin = placed->origin, *rest = placed->rest;
   const int kx = (kz + 1) % 3, ky = (kz + 2) % 3;
@@ -134,7 +135,8 @@ TC_NOINLINE void tc_take_ray_space(TcPlaced *placed, int kz, TcRays *rays) {
 #undef TC_NOT_TINY
 }
 
-/* The lanes of `lanes` whose directions are largest in the same component as that of the first of them. */
+/* Finds the largest component *kz of the direction of the first ray, and returns the lanes whose directions are largest
+ * in the same component. */
 static unsigned tc_along_one_axis(const TcLines *lines, unsigned lanes, int *kz) {
   unsigned result = 0;
   for (unsigned left = lanes; left; left &= left - 1) {
@@ -151,8 +153,8 @@ static unsigned tc_along_one_axis(const TcLines *lines, unsigned lanes, int *kz)
 }
 #endif
 
-/* The next rays of those placed, of one main axis where that matters; returns their lanes, which are those no more that
- * are placed. */
+/* Takes rays out of *placed and converts them for the walk; returns their lanes. In ray space these are rays with the
+ * same main axis, so that it may need several calls to take all. */
 static unsigned tc_take(const TcGround *ground, TcPlaced *placed, TcRays *rays) {
   unsigned lanes = placed->lanes;
   rays->doubt = tc_real_of_wide(placed->doubt);

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Vertices as the rays of a packet see them, a ray in each lane. There are two ways, decided for a whole frame:
+/* Vertices as the rays of a packet see them, with a ray in each lane. There are two ways, and a whole frame uses one.
  *
- * On the screen: vertices were projected for the camera (screen.h), and are moved by the ray's pixel. In perspective,
- * with q = distance / z − 1 and edges' values w, barycentric weights are in proportion to w (1 + q), and depths along
- * the ray, from the centre's plane, are −distance |direction| Σ w q / Σ w (1 + q).
+ * On the screen: vertices have been projected for the camera (screen.h), and the ray's place on the screen is
+ * subtracted. In perspective, let q = distance / z − 1, and w be the cross products of a face's edges. Then barycentric
+ * weights are in proportion to w (1 + q), and the depth of a crossing, from the plane through the volume's centre, is
+ * −distance |direction| Σ w q / Σ w (1 + q).
  *
  * In ray space, for any rays: vertices are sheared so that the ray is the z axis (Woop, Benthin, Wald: Watertight
- * ray/triangle intersection, 2013). Weights are w, depths from the point where the ray is nearest to the centre Σ w z /
- * Σ w. */
+ * ray/triangle intersection, 2013). Barycentric weights are in proportion to w, and the depth of a crossing, from the
+ * point of the ray that is nearest to the volume's centre, is Σ w z / Σ w. */
 #ifndef TC_WALK_POINTS_H
 #define TC_WALK_POINTS_H
 
@@ -21,34 +22,42 @@
 /* What rays are walked through. */
 typedef struct TcGround {
   const TcShell *shell;
-  const TcRows *values;       /* a scalar that is interpolated, or constant in cells; NULL: none */
-  const TcScreen *screen;     /* NULL: in ray space */
-  TcResolution resolution;    /* with TC_BOUND */
-  const TcSurfaces *surfaces; /* NULL: there are none, and packets need not know their rays' directions */
+  const TcRows *values;       /* the scalar; NULL if there is none */
+  const TcScreen *screen;     /* the projected vertices; NULL if rays are walked in ray space */
+  TcResolution resolution;    /* with TC_BOUND: what rounding does to vertices */
+  const TcSurfaces *surfaces; /* NULL: there are none, and packets need not know the directions of their rays */
 } TcGround;
 
 /* The rays of a packet. */
 typedef struct TcRays {
+  /* On the screen: the ray's place. */
 #if TC_SINGLE
   TcInt x, y;
 #else
-  TcVec x, y; /* screen: where the ray is */
+  TcVec x, y;
 #endif
-  TcVec scale;      /* what depths are multiplied with: −distance |direction| in perspective, else 1 */
-  TcVec begin, end; /* the interval of depths that counts */
-  TcVec doubt;      /* how far off its ends may be, in all */
-  /* Ray space: */
-  TcVec origin[3]; /* along kx, ky, kz, near the volume; what rounding took from it is in rest_x, rest_y, rest_z,
-                      sheared */
-  TcVec shear_x, shear_y, inverse_z, rest_x, rest_y, rest_z;
-  int kz; /* the directions' largest component, kx = (kz + 1) % 3, ky = (kz + 2) % 3 */
+  /* What depths are multiplied with: −distance |direction| in perspective, else 1. */
+  TcVec scale;
+  /* The interval of depths that counts. */
+  TcVec begin, end;
+  /* How far off its ends may be, in all. */
+  TcVec doubt;
+  /* In ray space: the largest component of the directions; kx = (kz + 1) % 3, ky = (kz + 2) % 3. */
+  int kz;
+  /* In ray space: a point of the ray near the volume, its components along kx, ky and kz. */
+  TcVec origin[3];
+  /* In ray space: what the rounding of that point took from it, sheared. */
+  TcVec rest_x, rest_y, rest_z;
+  /* In ray space: the direction's components along kx and ky divided by that along kz, and 1 divided by the latter. */
+  TcVec shear_x, shear_y, inverse_z;
 } TcRays;
 
+/* A vertex in each lane, as the lane's ray sees it. */
 typedef struct TcLanePoints {
-  TcVec x, y; /* beside the ray */
-  TcVec d;    /* screen: d of TcScreen; ray space: the depth */
-  TcVec s;    /* the scalar, of a point field */
-  TcWord id;
+  TcVec x, y; /* where the vertex is beside the ray */
+  TcVec d;    /* on the screen: d of TcScreen; in ray space: the depth */
+  TcVec s;    /* the scalar, if it is one of points */
+  TcWord id;  /* the vertex's number */
 } TcLanePoints;
 
 /* ── on the screen ── */
@@ -60,7 +69,7 @@ TC_INLINE void tc_points_on_screen(const void *vertices, const TcRays *rays, con
   TcVec component[4];
   tc_load_records(at, component);
 #if TC_SINGLE
-  /* The difference is exact before it is rounded to single precision, so relative to the distance from the ray. */
+  /* Differences of integers are exact. Rounding them is relative to the distance from the ray. */
   p->x = tc_to_real(tc_bits_of(component[0]) - rays->x);
   p->y = tc_to_real(tc_bits_of(component[1]) - rays->y);
 #else
@@ -74,7 +83,7 @@ TC_INLINE void tc_points_on_screen(const void *vertices, const TcRays *rays, con
 /* ── in ray space ── */
 
 #if !TC_SINGLE
-/* A point's components, those along kx, ky and kz, in the space of the rays. */
+/* Shears points, whose components along kx, ky and kz are given, into the space of the rays. */
 TC_INLINE void tc_shear(const TcRays *rays, const TcVec component[3], TcLanePoints *p) {
   const TcVec x = component[0] - rays->origin[0], y = component[1] - rays->origin[1],
               z = component[2] - rays->origin[2];
@@ -108,7 +117,7 @@ TC_NOINLINE void tc_points_in_ray_space(const TcGround *ground, const TcRays *ra
   p->s = s;
 }
 
-/* One vertex for all rays, but for its scalar. */
+/* Loads one vertex for all lanes, without its scalar. */
 TC_INLINE void tc_point_in_ray_space(const TcGround *ground, const TcRays *rays, uint32_t id, TcLanePoints *p) {
   const int kx = rays->kz == 2 ? 0 : rays->kz + 1, ky = rays->kz == 0 ? 2 : rays->kz - 1;
   double position[3];
@@ -118,6 +127,7 @@ TC_INLINE void tc_point_in_ray_space(const TcGround *ground, const TcRays *rays,
 }
 #endif
 
+/* Loads a vertex for each lane. */
 TC_INLINE void tc_points_load(const TcGround *ground, const TcRays *rays, const uint32_t id[TC_LANES],
                               TcLanePoints *p) {
 #if TC_SINGLE
@@ -131,7 +141,7 @@ TC_INLINE void tc_points_load(const TcGround *ground, const TcRays *rays, const 
   p->id = tc_load_word(id);
 }
 
-/* One vertex for all lanes. */
+/* Loads one vertex for all lanes. */
 TC_INLINE void tc_points_of_one(const TcGround *ground, const TcRays *rays, uint32_t id, TcLanePoints *p) {
 #if !TC_SINGLE
   if (TC_UNLIKELY(!ground->screen)) {
@@ -157,7 +167,8 @@ TC_INLINE void tc_points_of_one(const TcGround *ground, const TcRays *rays, uint
   p->id = tc_set_word(id);
 }
 
-/* Where one vertex is beside all rays, mirrored perhaps. */
+/* Finds where one vertex is beside the rays of all lanes. It may be mirrored at the ray, which changes no cross
+ * product. */
 TC_INLINE void tc_point_beside(const TcGround *ground, const TcRays *rays, uint32_t id, TcVec *x, TcVec *y) {
 #if !TC_SINGLE
   if (TC_UNLIKELY(!ground->screen)) {
@@ -191,15 +202,15 @@ TC_NOINLINE void tc_edges_tie(const TcLanePoints *a, const TcLanePoints *b, unsi
   }
 }
 
-/* The lanes in which one of three numbers is as good as zero. */
+/* The lanes in which one of three numbers is zero or, in single precision, may have underflowed. */
 TC_INLINE TcMask tc_vanishes(const TcVec e[3]) {
   const TcVec least = tc_min(tc_min(tc_abs(e[0]), tc_abs(e[1])), tc_abs(e[2]));
   return TC_SINGLE ? tc_lt(least, tc_set(TC_REAL_MIN)) : tc_eq(least, tc_set(0));
 }
 
-/* Three cross products v[a[k]] × w[b[k]]: to a relative error of 2⁻⁵¹ (single precision: 2⁻²²), never zero, with the
- * exact sign for the points given. That edges have relative accuracy matters: they are the weights of depth and value,
- * also on faces that are seen almost edge-on, where all three nearly cancel. */
+/* Computes the three cross products v[a[k]] × w[b[k]] to a relative error of 2⁻⁵¹ (single precision: 2⁻²²). They are
+ * never zero and have the exact sign for the points given (ray.h). The error must be relative, as they are the weights
+ * of depth and value, also on faces that are seen almost edge-on, where the products of all three nearly cancel. */
 TC_INLINE void tc_edges(TcMask active, const TcLanePoints v[], const TcLanePoints w[], const int a[3], const int b[3],
                         TcVec e[3]) {
   for (int k = 0; k < 3; ++k)
@@ -208,7 +219,8 @@ TC_INLINE void tc_edges(TcMask active, const TcLanePoints v[], const TcLanePoint
   if (TC_LIKELY(!tc_any(zero)))
     return;
   for (int k = 0; k < 3; ++k) {
-    const TcLanePoints p = v[a[k]], q = w[b[k]]; /* copies, so that the others need no addresses */
+    const TcLanePoints p = v[a[k]],
+                       q = w[b[k]]; /* copies: the originals stay in registers, as nothing takes their address */
     TcVec edge = e[k];
     const TcMask here = TC_SINGLE ? tc_lt(tc_abs(edge), tc_set(TC_REAL_MIN)) : tc_eq(edge, tc_set(0));
     tc_edges_tie(&p, &q, tc_bits(tc_and(zero, here)), &edge);
@@ -216,11 +228,12 @@ TC_INLINE void tc_edges(TcMask active, const TcLanePoints v[], const TcLanePoint
   }
 }
 
-/* Those of a triangle, each opposite its vertex, and from a face's vertices to q. */
+/* The cross products of a triangle's edges, e[k] being that of the edge opposite v[k]. */
 TC_INLINE void tc_edges_of(TcMask active, const TcLanePoints v[3], TcVec e[3]) {
   static const int next[3] = {1, 2, 0}, last[3] = {2, 0, 1};
   tc_edges(active, v, v, next, last, e);
 }
+/* The cross products of a face's vertices with q: those of the edges from v[k] to q. */
 TC_INLINE void tc_edges_to(TcMask active, const TcLanePoints v[3], const TcLanePoints *q, TcVec e[3]) {
   static const int of_v[3] = {0, 1, 2}, of_q[3] = {0, 0, 0};
   tc_edges(active, v, q, of_v, of_q, e);
@@ -231,17 +244,18 @@ TC_INLINE TcLanePoints tc_select_points(TcMask m, TcLanePoints a, TcLanePoints b
                         tc_select_word(m, a.id, b.id)};
 }
 
-/* How much depth and scalar change over a face, at most, for each unit that a ray is moved beside it; a number with the
- * range 1 changes by `one`. */
+/* The most that the depth and the scalar of a crossing change if the ray is moved aside by one unit. */
 typedef struct TcTilt {
-  TcVec s, z, one;
+  TcVec z, s;
+  TcVec one; /* the same for any value that differs by at most 1 between the face's vertices */
 } TcTilt;
 
 /* Where rays cross a face. */
 typedef struct TcCrossing {
-  TcVec z, s;           /* the depth; the scalar of a point field, which is kept within those of the vertices */
-  TcVec barycentric[3]; /* with TC_WEIGHTS, TC_CORNERS or TC_SURFACES */
-  TcVec reach;          /* with TC_BOUND: how far the face's vertices are beside the ray, at most */
+  TcVec z;              /* the depth */
+  TcVec s;              /* the scalar, if it is one of points; it is kept within the range of the vertices' scalars */
+  TcVec barycentric[3]; /* with TC_WEIGHTS, TC_CORNERS or TC_SURFACES: the weights of the vertices */
+  TcVec reach;          /* with TC_BOUND: the largest coordinate of the face's vertices beside the ray */
   TcTilt tilt;          /* with TC_BOUND */
 } TcCrossing;
 
@@ -252,10 +266,11 @@ TC_INLINE TcVec tc_most3(TcVec a, TcVec b, TcVec c) {
   return tc_max(tc_max(a, b), c);
 }
 
-/* With λ the barycentric weights of the point beside the ray, and p = 1 + q in perspective, else 1, a vertex's number f
- * is interpolated as Σ λ p f / Σ λ p. Its derivative is Σ (f − f₀) p ∇λ / Σ λ p, |∇λ| at most the longest edge, which
- * is below 2 √2 times `reach`, over twice the area; in all at most the range of f times 8.5 reach max(p) / Σ w p, with
- * w the edges' cross products, whose sum is twice the area. */
+/* Computes reach and tilt. Let λ be the barycentric weights of the ray's place in the projected face, and p = 1 + q in
+ * perspective, else 1. A value f of the vertices is interpolated as Σ λ p f / Σ λ p. Its derivative, when the ray is
+ * moved aside, is Σ (f − f₀) p ∇λ / Σ λ p, with f₀ the interpolated value. |∇λ| is at most the face's longest edge
+ * divided by twice its area. The edge is shorter than 2 √2 · reach, and twice the area is the sum of the edges' cross
+ * products w. So in all, for three vertices, the derivative is at most (range of f) · 8.5 · reach · max(p) / Σ w p. */
 TC_INLINE void tc_face_tilt(const unsigned on, bool perspective, const TcRays *rays, const TcLanePoints v[3],
                             TcVec inverse, TcCrossing *c) {
   TcVec across[3];
@@ -275,7 +290,7 @@ TC_INLINE void tc_face_tilt(const unsigned on, bool perspective, const TcRays *r
   c->tilt.s = factor * (tc_most3(v[0].s, v[1].s, v[2].s) - tc_least3(v[0].s, v[1].s, v[2].s));
 }
 
-/* The crossing of a face with vertices v, each weighted by the cross product of the two others. */
+/* Computes where rays cross a face with vertices v; the weight of each is the cross product of the two others. */
 TC_INLINE void tc_cross_face(const unsigned on, const TcGround *ground, const TcRays *rays, const TcLanePoints v[3],
                              const TcVec weight[3], TcCrossing *c) {
   const bool perspective = ground->screen && ground->screen->perspective;
@@ -296,7 +311,7 @@ TC_INLINE void tc_cross_face(const unsigned on, const TcGround *ground, const Tc
   if (on & TC_ASSOCIATIONS)
     return;
   const TcVec value = tc_madd(w[0], v[0].s, tc_madd(w[1], v[1].s, w[2] * v[2].s)) * inverse;
-  /* In this order NaN stays NaN. */
+  /* With the operands in this order, NaN stays NaN. */
   c->s = tc_max(tc_least3(v[0].s, v[1].s, v[2].s), tc_min(tc_most3(v[0].s, v[1].s, v[2].s), value));
 }
 

@@ -1,22 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Projects vertices onto the screen (screen.h). Sums and quotients are carried to twice the precision and rounded once,
- * so that a coordinate is off by 2⁻⁵³ of itself and 2⁻¹⁰⁰ of the eye's distance. */
+/* Projects vertices onto the screen (screen.h). Sums and quotients are computed to twice the precision and rounded
+ * once, so that the error of a coordinate is at most 2⁻⁵³ of its magnitude plus 2⁻¹⁰⁰ of the eye's distance. */
 #ifndef TC_WALK_PROJECT_H
 #define TC_WALK_PROJECT_H
 
 #include "base/exact.h"
 #include "walk/points.h"
 
-enum { TC_PROJECTED = 8 }; /* vertices at once: loops over them become vectors */
+/* How many vertices are projected at once, so that the compiler makes vectors of loops over them. */
+enum { TC_PROJECTED = 8 };
 
-/* Numbers as high + low. */
+/* Numbers to twice the precision: high + low. */
 typedef struct TcPairs {
   double high[TC_PROJECTED], low[TC_PROJECTED];
 } TcPairs;
 
 #define TC_EACH_PROJECTED for (int i = 0; i < TC_PROJECTED; ++i)
 
-/* dual · a */
+/* The products dual · a. */
 TC_INLINE void tc_project_dot(const TcDual *dual, const TcPairs a[3], TcPairs *result) {
   TC_EACH_PROJECTED {
     const double p = a[0].high[i] * dual->high[0], q = a[1].high[i] * dual->high[1], r = a[2].high[i] * dual->high[2];
@@ -32,7 +33,7 @@ TC_INLINE void tc_project_dot(const TcDual *dual, const TcPairs a[3], TcPairs *r
   }
 }
 
-/* numerator / z + offset, rounded once. */
+/* Computes numerator / z + offset, rounded once. */
 TC_INLINE void tc_project_divide(const TcPairs *numerator, const TcPairs *z, double offset,
                                  double result[TC_PROJECTED]) {
   TC_EACH_PROJECTED {
@@ -44,6 +45,7 @@ TC_INLINE void tc_project_divide(const TcPairs *numerator, const TcPairs *z, dou
   }
 }
 
+/* Computes value + offset, rounded once. */
 TC_INLINE void tc_project_add(const TcPairs *value, double offset, double result[TC_PROJECTED]) {
   TC_EACH_PROJECTED {
     const double sum = value->high[i] + offset;
@@ -51,6 +53,7 @@ TC_INLINE void tc_project_add(const TcPairs *value, double offset, double result
   }
 }
 
+/* Projects `count` ≤ TC_PROJECTED vertices from `begin` on, in the format of TcScreen.vertices. */
 static void tc_project_some(const TetcastVolume *volume, const TcRows *values, const TcView *view, TcScreen *screen,
                             int64_t begin, int count) {
   TcPairs a[3], x, y, z;

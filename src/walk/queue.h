@@ -1,35 +1,36 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* From rays to the faces of the shell that they cross: rays wait until there are as many as Embree sees at once, and
- * become packets. */
+/* Finds the faces of the shell that rays cross. Rays wait in a queue until there are as many as Embree takes at once;
+ * then their hits are found, and they become packets. */
 #ifndef TC_WALK_QUEUE_H
 #define TC_WALK_QUEUE_H
 
 #include "walk/place.h"
 
 enum {
-  TC_QUEUE_RAYS = TC_LANES > 4 ? 16 : 8, /* of which Embree is asked at once */
-  TC_QUEUE = TC_QUEUE_RAYS / TC_LANES    /* packets */
+  TC_QUEUE_RAYS = TC_LANES > 4 ? 16 : 8, /* how many rays Embree takes at once */
+  TC_QUEUE = TC_QUEUE_RAYS / TC_LANES    /* how many packets they make */
 };
 
 /* Rays that wait to become a packet. */
 typedef struct TcWaiting {
   TcRays rays;
-  TcWide along[3]; /* as TcPacket has them */
+  /* As TcPacket has them. */
+  TcWide along[3];
   TcVec slice[TETCAST_MAX_SLICES];
-  unsigned lanes;
+  unsigned lanes;    /* the lanes that have a ray */
   unsigned doubtful; /* single precision: lanes whose rays pass an edge of the shell as near as rounding may move it */
-  TcHits *hits;
+  TcHits *hits;      /* [TC_LANES] lists */
   int64_t destination[TC_LANES];
 } TcWaiting;
 
 typedef struct TcQueue {
   const TcGround *ground;
   TcWaiting waiting[TC_QUEUE];
-  int next, count;
+  int next, count; /* the packet that is walked next; how many there are */
   _Alignas(64) double from_center[3][TC_QUEUE_RAYS], direction[3][TC_QUEUE_RAYS];
 } TcQueue;
 
-/* Rays of those placed are the next that wait. */
+/* Takes as many of the rays placed as make one packet, and lets them wait. */
 static void tc_enqueue(TcPlaced *placed, TcQueue *queue) {
   const int first = queue->count * TC_LANES;
   TcWaiting *waiting = &queue->waiting[queue->count++];
@@ -48,7 +49,8 @@ static void tc_enqueue(TcPlaced *placed, TcQueue *queue) {
 
 /* ── hits ── */
 
-/* Face i of the shell, which the rays of `lanes` cross, or pass through an edge of. */
+/* Notes face i of the shell as a hit of those rays of `lanes` that cross it. Of these lanes it is known that their rays
+ * cross the face or one of its edges; ties are decided here. */
 TC_NOINLINE void tc_face_reached(const TcQueue *queue, const TcWaiting *waiting, uint32_t i, unsigned lanes) {
   const uint32_t *vertex = queue->ground->shell->faces[i].vertex;
   TcLanePoints p[3];
@@ -68,18 +70,18 @@ TC_NOINLINE void tc_face_reached(const TcQueue *queue, const TcWaiting *waiting,
     TcHit *hit = tc_hits_append(&waiting->hits[l]);
     if (!hit)
       return;
-    hit->begin = hit->end =
-        (double)depth[l]; /* member by member: what is put together in memory first has to be waited for */
+    /* Member by member: a struct that is made in memory first and copied then would have to be waited for. */
+    hit->begin = hit->end = (double)depth[l];
     hit->id = i;
     hit->done = false;
   }
 }
 
-/* In single precision a ray may meet the shell, or miss it, by rounding alone, also where it would go through a lot of
- * the mesh: such rays are walked again. Rounding moves each end of an edge by at most δ = beside + relative · its
- * distance from the ray, which is at most √2 times the largest coordinate c, and so the edge's cross product by at most
- * 2 √2 c δ + δ². What the product itself is rounded by is less than what 1.5 c, for √2 c, and 3 c, for 2 √2 c, have to
- * spare. */
+/* The largest cross product of an edge's ends that may have the wrong sign by rounding. In single precision, rounding
+ * may decide whether a ray meets the shell or misses it, even if it would cross a large part of the mesh; such rays are
+ * walked again. Rounding moves each end of an edge by at most δ = beside + relative · (its distance from the ray), and
+ * the distance is at most √2 c, with c the largest coordinate. So it changes the cross product by at most 2 √2 c δ +
+ * δ². Taking 1.5 c for √2 c and 3 c for 2 √2 c covers the rounding of the product itself. */
 #if TC_SINGLE
 TC_INLINE TcVec tc_face_margin(const TcGround *ground, const TcVec x[3], const TcVec y[3]) {
   TcVec most = tc_set(0);
@@ -91,7 +93,7 @@ TC_INLINE TcVec tc_face_margin(const TcGround *ground, const TcVec x[3], const T
 }
 #endif
 
-/* Face i of the shell, which the rays of `lanes` may cross. */
+/* Looks which of the rays of `lanes` cross face i of the shell; of these it is known that they may. */
 static void tc_face_candidate(void *user, uint32_t i, unsigned lanes) {
   TcQueue *queue = user;
   const uint32_t *vertex = queue->ground->shell->faces[i].vertex;
@@ -103,8 +105,7 @@ static void tc_face_candidate(void *user, uint32_t i, unsigned lanes) {
     TcVec x[3], y[3];
     for (int k = 0; k < 3; ++k)
       tc_point_beside(queue->ground, &waiting->rays, vertex[k], &x[k], &y[k]);
-    /* An edge has the sign of the difference of two products, rounded or not, if they differ: most lanes need no more.
-     */
+    /* If two rounded products differ, their difference has the exact sign. That decides for most lanes. */
     TcMask left = tc_none(), right = left;
 #if TC_SINGLE
     const TcVec margin = tc_face_margin(queue->ground, x, y);
@@ -134,7 +135,7 @@ static void tc_face_candidate(void *user, uint32_t i, unsigned lanes) {
 #include "walk/cells.h"
 #endif
 
-/* What the rays that wait meet in Embree; false: out of memory. */
+/* Finds what the rays that wait meet in Embree. False if memory has run out. */
 static bool tc_queue_trace(TcQueue *queue) {
   const TcShell *shell = queue->ground->shell;
   unsigned lanes = 0;

@@ -10,18 +10,19 @@
 
 #include "volume/volume.h"
 
-/* A ray as it is asked for: from eye + offset along the unit vector `direction`, scaled. The two are kept apart because
- * their sum, far from the coordinates' origin, would be rounded to the spacing of numbers there. */
+/* A ray as it is asked for. It goes from eye + offset along the unit vector `direction`, scaled. The two are kept apart
+ * because their sum, far from the coordinates' origin, would be rounded to the spacing of numbers there. */
 typedef struct TcLine {
   double eye[3], offset[3], direction[3];
-  double begin, end; /* what of it counts: distances from eye + offset, scaled */
+  double begin, end; /* the part of the ray that counts, as distances from eye + offset, scaled */
 } TcLine;
 
 /* Points' coordinates of magnitude below TC_TINY are zero. Then every x and y is a multiple of 2^−406, their products
  * are multiples of 2^−812, and neither a product nor its rounding error can underflow. */
 
-/* The cross product of points a and b with these numbers where it is zero, or was rounded to it: not zero, with the
- * sign for points moved by an infinitesimal amount; of opposite sign for b and a. */
+/* The cross product of the points a and b, where `a` and `b` are the numbers of the vertices, for products that are
+ * zero or were rounded to zero. The result is never zero: if the exact product is, it has the sign that it would have
+ * if the points were moved by an infinitesimal amount. For b and a it is of the opposite sign. */
 double tc_tie(double ax, double ay, uint32_t a, double bx, double by, uint32_t b);
 
 #endif

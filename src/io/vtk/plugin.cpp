@@ -134,10 +134,10 @@ static TetcastAssociation association_of(int64_t value) {
   return value == TETCAST_CELL ? TETCAST_CELL : TETCAST_POINT;
 }
 
-static void take_unread(WireReader *wire, bool lost, Contents *contents) {
+static void take_unread(WireReader *wire, bool unreadable, Contents *contents) {
   const TetcastAssociation association = association_of(wire->number());
   const std::string name = wire->text();
-  note_unread(&contents->unread, {association, name}, lost ? wire->text() : "");
+  note_unread(&contents->unread, {association, name}, unreadable ? wire->text() : "");
 }
 
 static void take_block(const Reading &reading, WireReader *wire, WireRecord record, Contents *contents) {

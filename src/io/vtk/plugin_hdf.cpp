@@ -352,8 +352,8 @@ void Hdf::add_arrays(vtkDataSet *dataset, int64_t step,
       }
       (of_points ? static_cast<vtkDataSetAttributes *>(dataset->GetPointData()) : dataset->GetCellData())
           ->AddArray(values);
-    } catch (const Unreadable &unreadable) {
-      tcv::note_unread(&lost, array, unreadable.reason);
+    } catch (const Unreadable &error) {
+      tcv::note_unread(&unreadable, array, error.reason);
     }
   }
 }

@@ -95,7 +95,7 @@ struct Attempt {
   bool good = false, foreign = false; // foreign: not of the format
   std::string error;
   std::vector<std::string> warnings;
-  std::vector<tcv::UnreadArray> lost;
+  std::vector<tcv::UnreadArray> unreadable;
 };
 
 // Anew each time: a reader that has failed once may be in any state.
@@ -123,7 +123,7 @@ Attempt try_reading(const tcv::PluginRequest &request, const std::vector<tcv::Ar
           source->enable(array, true);
         attempt.object = source->read(step);
         attempt.warnings = source->remarks;
-        attempt.lost = source->lost;
+        attempt.unreadable = source->unreadable;
       }
       attempt.good = !attempt.foreign && attempt.object && !capture.failed();
       attempt.error = capture.error();
@@ -314,7 +314,7 @@ void run(const tcv::PluginRequest &request, tcv::WireWriter *wire) {
     wire->record(tcv::WIRE_WARN);
     wire->text(warning);
   }
-  for (const tcv::UnreadArray &one : attempt.lost)
+  for (const tcv::UnreadArray &one : attempt.unreadable)
     tell_lost(one, wire);
   tell(request, attempt.object, wire);
   wire->record(tcv::WIRE_END);

@@ -28,24 +28,24 @@ public:
   // False: the file is not of this format.
   virtual bool open(const std::string &path) = 0;
   virtual std::vector<double> times() = 0;
-  // Those that there are, of which no one is read that is not enabled.
+  // The arrays of the file. Only enabled ones are read.
   virtual std::vector<ArrayName> arrays() = 0;
   virtual void enable(const ArrayName &array, bool on) = 0;
   virtual vtkSmartPointer<vtkDataObject> read(int64_t step) = 0;
 
-  std::vector<std::string> remarks; // that the user shall see
-  std::vector<UnreadArray> lost;    // of those enabled the ones that it knows it can't read
+  std::vector<std::string> remarks;    // messages for the user
+  std::vector<UnreadArray> unreadable; // enabled arrays that it knows it can't read
 };
 
-// What is asked for beside arrays and steps.
+// Options beside arrays and steps.
 struct SourceOptions {
-  bool displace = true; // points are moved by what the file has as their displacements
+  bool displace = true; // whether points are moved by the file's displacements
 };
 
-// What each plugin_NAME.cpp has.
+// Makes the source of a program; each plugin_NAME.cpp defines it.
 std::unique_ptr<Source> make_source(const SourceOptions &options);
 
-// By a reader of VTK's whose arrays can be chosen by name.
+// A source that reads by one of VTK's readers, whose arrays can be chosen by name.
 template <typename Reader> class VtkSource : public Source {
 public:
   std::vector<double> times() override {

@@ -179,11 +179,11 @@ public:
 
   // Takes out of what was read the arrays whose values could not be, and puts in those that needed another type.
   void mend(vtkDataSet *output) {
-    for (const tcv::ArrayName &lost : lost_)
-      attributes_of(output, lost.association)->RemoveArray(lost.name.c_str());
+    for (const tcv::ArrayName &one : unreadable_)
+      attributes_of(output, one.association)->RemoveArray(one.name.c_str());
     for (const auto &[association, array] : wider_)
       attributes_of(output, association)->AddArray(array);
-    lost_.clear();
+    unreadable_.clear();
     wider_.clear();
   }
 
@@ -389,7 +389,7 @@ private:
         reason = doubt.error().empty() ? "its data are damaged" : doubt.error();
     }
     if (!reason.empty()) {
-      lost_.push_back({association, name});
+      unreadable_.push_back({association, name});
       lose({association, name}, reason);
     } else if (overflowed_) {
       widen(element, association, array);
@@ -460,7 +460,7 @@ private:
 
   const char *only_ = nullptr;
   std::vector<tcv::UnreadArray> *unread_ = nullptr;
-  std::vector<tcv::ArrayName> lost_;
+  std::vector<tcv::ArrayName> unreadable_;
   std::vector<std::pair<TetcastAssociation, vtkSmartPointer<vtkDataArray>>> wider_;
   bool overflowed_ = false;
   const vtkXMLDataElement *text_element_ =
