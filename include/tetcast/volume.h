@@ -37,9 +37,9 @@ TETCAST_API TetcastVolumeDesc tetcast_volume_desc_default(void);
  * TBB allocate for themselves, and can't bear a refusal everywhere. So what they need (16 MiB, and 96 bytes for each
  * face or cell that Embree holds) is tried first, and they are not begun with where it isn't there. Were the system to
  * refuse memory right after it gave that much, the process would end if the refusal met the few bytes in which Embree
- * notes a thread's errors, or TBB while it loads what it needs once in a process; or several threads that build
- * together, which they do from 65536 faces or cells on. The same holds for tetcast_scene_render() where only part of a
- * volume can be seen.
+ * notes a thread's errors, or TBB while it loads what it needs once in a process (it may then not end, but wait for
+ * ever in the next call); or several threads that build together, which they do from 65536 faces or cells on. The same
+ * holds for tetcast_scene_render() where only part of a volume can be seen.
  *
  * `desc` may be NULL (defaults). Cells with a vertex twice have no inside and are left out, as are
  * cells whose four vertices an earlier cell has; a warning counts them, and another one faces of three cells or more.
