@@ -56,7 +56,8 @@ TETCAST_API TetcastVolumeDesc tetcast_volume_desc_default(void);
  * one exception: Embree and TBB allocate for themselves, and not all of their code copes with a refusal. So what they
  * need (16 MiB, and 96 bytes for each face or cell that Embree holds) is allocated and freed before they are called. If
  * the system refuses memory nevertheless right after that, the process may end: when Embree allocates the few bytes in
- * which it notes a thread's errors, when TBB loads what it needs once in a process, or when several threads build
+ * which it notes a thread's errors, when TBB loads what it needs once in a process (it may then
+ * not end, but wait for ever in the next call), or when several threads build
  * together, which they do from 65536 faces or cells on. The same holds for tetcast_scene_render() where only part of a
  * volume can be seen. */
 TETCAST_API TetcastStatus tetcast_volume_create(TetcastContext *context, const TetcastMesh *mesh,

@@ -294,7 +294,7 @@ static void light_is_that_of_the_plain_way(void **state) {
   uint64_t seed = 3;
   Cube cube = cube_create(6, 0.6);
   int screens = 0, rows[TC_KERNELS] = {0};
-  for (int i = 0; i < SCENES; ++i) {
+  for (int i = 0; i < repetitions(SCENES); ++i) {
     const TetcastAssociation association = i % 3 == 2            ? TETCAST_CELL
                                            : i % 3 == 1 && i % 2 ? TETCAST_CORNER
                                                                  : TETCAST_POINT;
@@ -323,7 +323,7 @@ static void light_is_that_of_the_plain_way(void **state) {
     free(values);
   }
   print_worst();
-  assert_true(screens > SCENES / 4);
+  assert_true(screens > repetitions(SCENES) / 4);
   for (int row = 0; row < TC_KERNELS; ++row) {
     if (kernel_rows[row].features & TC_SURFACES)
       continue; /* tests/unit/isosurface.c compares their pictures */
@@ -344,7 +344,7 @@ static void values_are_those_of_the_plain_way(void **state) {
   Cube cube = cube_create(6, 0.6);
   TetcastTransferFunction *transfer = gray_of(context, 0); /* which hides nothing of it */
   int screens = 0, rows[TC_KERNELS] = {0};
-  for (int i = 0; i < VALUE_SCENES; ++i) {
+  for (int i = 0; i < repetitions(VALUE_SCENES); ++i) {
     const TetcastAssociation association = i % 3 == 2            ? TETCAST_CELL
                                            : i % 3 == 1 && i % 2 ? TETCAST_CORNER
                                                                  : TETCAST_POINT;
@@ -369,7 +369,7 @@ static void values_are_those_of_the_plain_way(void **state) {
     free(values);
   }
   print_worst();
-  assert_true(screens > VALUE_SCENES);
+  assert_true(screens > repetitions(VALUE_SCENES));
   assert_true(rows[TC_KERNEL_value] && rows[TC_KERNEL_value_cells] && rows[TC_KERNEL_value_corners]);
   tetcast_transfer_function_destroy(&transfer);
   cube_destroy(&cube);
@@ -385,7 +385,7 @@ static void groups_are_those_of_the_plain_way(void **state) {
   uint64_t seed = 12;
   Cube cube = cube_create(6, 0.6);
   int screens = 0, rows[TC_KERNELS] = {0};
-  for (int i = 0; i < GROUP_SCENES; ++i) {
+  for (int i = 0; i < repetitions(GROUP_SCENES); ++i) {
     static const int numbers[] = {1, 2, 3, 4, 5, 8, 9, 16, MOST_GROUPS};
     const int groups = numbers[i % 9], kinds = i / 9 % 4;
     const int counts[2] = {kinds == 1            ? 1
@@ -435,7 +435,7 @@ static void groups_are_those_of_the_plain_way(void **state) {
     }
   }
   print_worst();
-  assert_true(screens > GROUP_SCENES / 4);
+  assert_true(screens > repetitions(GROUP_SCENES) / 4);
   assert_true(rows[TC_KERNEL_groups] && rows[TC_KERNEL_groups_bound]);
   cube_destroy(&cube);
   fixture_end(&fixture);
@@ -526,7 +526,7 @@ static void threads_change_no_bit(void **state) {
   Cube cube = cube_create(5, 0.6);
   const TetcastCamera cameras[] = {camera_of(2.1, 1.7, 3.3, 0.5, 0.5, 0.5), camera_of(0.43, 0.52, 0.61, 1, 0.2, 0)};
   int singles = 0;
-  for (int i = 0; i < 2 * 4 * 5; ++i) {
+  for (int i = 0; i < 2 * 4 * 5; i += test_short() ? 3 : 1) {
     const int kind = i % 4, way = i / 4 % 5,
               traversal = i / 20; /* way: exact, exact with bounds and samples, tolerance, sampled, blend mode */
     if (kind == 3 && way >= 3)

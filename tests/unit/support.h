@@ -77,6 +77,16 @@ typedef struct Cube {
   double *values;   /* [vertex_count] */
 } Cube;
 
+/* With TETCAST_TEST_SHORT in the environment, as the asan preset has it, tests do a quarter of what is much the same
+ * many times over: there it is not about numbers, but about what the code does to memory. */
+static inline bool test_short(void) {
+  return getenv("TETCAST_TEST_SHORT") != NULL;
+}
+
+static inline int repetitions(int count) {
+  return test_short() ? (count + 3) / 4 : count;
+}
+
 static inline double uniform(uint64_t *state) { /* in [0, 1) */
   *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
   return (double)(*state >> 11) * 0x1p-53;
