@@ -133,7 +133,7 @@ static void append(BruteSpans *list, const BruteSpan *span) {
   list->spans[list->count++] = *span;
 }
 
-/* The span's scalars become those of the field; false: not finite, so transparent. */
+/* Sets the span's scalars from the field. False if they aren't finite, so that the cell is transparent. */
 static bool load_values(Cell *cell, const TetcastField *field, int64_t number) {
   const bool of_cells = tetcast_field_association(field) == TETCAST_CELL;
   for (int i = 0; i < 4; i++) {
@@ -144,7 +144,7 @@ static bool load_values(Cell *cell, const TetcastField *field, int64_t number) {
   return true;
 }
 
-/* In order, and without the second of cells that have the same four vertices, which count once. */
+/* Sorts the spans. Of cells with the same four vertices only one stays, as they count once. */
 static void put_in_order(BruteSpans *list) {
   if (list->count > 0)
     qsort(list->spans, (size_t)list->count, sizeof *list->spans, along);
@@ -155,8 +155,8 @@ static void put_in_order(BruteSpans *list) {
   list->count = kept;
 }
 
-/* How far the rays beside the ray are from it: several roundings in double of all lengths that a renderer reckons with.
- * Its rays are no more exact than that. */
+/* How far the rays beside a ray are from it: several times the rounding, in double precision, of all lengths that a
+ * renderer computes with, as its rays are no more exact than that. */
 static long double offset_of(const TetcastMesh *mesh, const ReferenceRay *line) {
   double bounds[6];
   tetcast_mesh_bounds(mesh, bounds);
@@ -231,7 +231,7 @@ void brute_release(BruteRay *ray) {
 
 /* ── what is seen along them ── */
 
-/* A list of knots: value first, then what it has there. */
+/* A list of knots: each is a value, and what holds at it. */
 typedef struct Knots {
   const double *rows;
   int64_t count;
@@ -339,9 +339,9 @@ static void shade(const BruteSpans *list, const TetcastTransferFunction *transfe
   rgba[3] = -expm1l(-light.depth);
 }
 
-/* Where light changes smoothly, or with a kink, from one side of the ray to the other, the ray itself has no more than
- * what those beside it have, by as much as they differ. A cell that was counted twice or not at all shows by going
- * beyond. */
+/* If light changes smoothly from one side of the ray to the other, or with a kink, the ray's own light lies between
+ * that of the rays beside it, or beyond by no more than they differ. If it is further beyond, a cell was counted twice
+ * or not at all. */
 void brute_shade(const BruteRay *ray, const TetcastTransferFunction *transfer_function, BruteLight *light) {
   long double own[4];
   shade(&ray->cast[0], transfer_function, own);

@@ -36,8 +36,7 @@ void brute_trace(BruteRay *ray, const TetcastMesh *mesh, const TetcastField *fie
 /* The light of a ray: each of premultiplied colour and opacity lies between two numbers. */
 typedef struct BruteLight {
   long double low[4], high[4];
-  /* Whether the ray itself differs from those beside it, so that the numbers are theirs; else they are its own as well.
-   */
+  /* Whether the ray differs from those beside it, so that the numbers are theirs; else they are its own as well. */
   bool beside;
   /* How much the rays beside it differ. */
   long double spread;

@@ -71,7 +71,7 @@ void cli_guess(CliGuess *guess, const char *name) {
   if (length == 0 || other == 0 || length > most || other > most)
     return;
   const size_t distance = distance_between(guess->word, name), near = (length > other ? length : other) / 3;
-  /* Words of a few letters are near to everything: they have to begin alike. */
+  /* Words of a few letters are near to everything, so they have to begin with the same letter. */
   const bool like =
       distance <= near || (distance == 1 && tolower((unsigned char)*guess->word) == tolower((unsigned char)*name));
   if (like && (!guess->best || distance < guess->distance)) {
@@ -178,7 +178,7 @@ int cli_finish_output(void) {
   if (fflush(stdout) == 0 && !ferror(stdout))
     return CLI_DONE;
   struct pollfd end = {.fd = STDOUT_FILENO};
-  if (poll(&end, 1, 0) > 0 && end.revents & POLLERR) /* as with "| head": the reader has enough, which is no fault */
+  if (poll(&end, 1, 0) > 0 && end.revents & POLLERR) /* as with "| head", the reader wants no more, which is no fault */
     return 128 + SIGPIPE;
   cli_error("cannot write to standard output");
   return CLI_FAILED;

@@ -36,7 +36,7 @@ static void add_time(ConvergeRow *row, double seconds) {
   row->seconds = (row->times[(row->timed - 1) / 2] + row->times[row->timed / 2]) / 2;
 }
 
-/* The bound on the exact picture's error, which takes longer to find than the picture: it is not timed. */
+/* Finds the bound on the exact picture's error. That takes longer than the picture alone, so it is not timed. */
 static TetcastStatus find_bound(Converge *converge, const TetcastScene *scene, const TetcastCamera *camera,
                                 TetcastRenderDesc desc, const TetcastFrame *like, double *bound) {
   TetcastFrameDesc frame_desc = tetcast_frame_desc_default();

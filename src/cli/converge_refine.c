@@ -10,8 +10,8 @@
 
 enum { PIXELS = CONVERGE_REFINE_WIDTH * CONVERGE_REFINE_HEIGHT };
 
-/* The scalar, within [0, 1] and smooth, and what it looks like: linear all the way, so that the only thing lost on a
- * mesh is the scalar's curvature. */
+/* The scalar, which is smooth and within [0, 1], and a transfer function that is linear over that range. So the only
+ * error on a mesh comes from the scalar's curvature. */
 static long double scalar(const long double x[3]) {
   return 0.5L + 0.24L * (sinl(5 * x[0] + x[2]) * cosl(4 * x[1]) + cosl(4 * x[2] + 2 * x[0] - x[1]));
 }
@@ -78,7 +78,7 @@ static void integrate(const ReferenceRay *ray, const long double t[2], int panel
   rgba[3] = -expm1l(-depth);
 }
 
-/* A pixel, with panels halved until nothing changes; returns the last change. */
+/* Integrates along a pixel's ray, with panels that are halved until nothing changes. Returns the last change. */
 static long double analytic_pixel(int64_t pixel, double rgba[4]) {
   const ReferenceRay ray = reference_ray(&view, CONVERGE_REFINE_WIDTH, CONVERGE_REFINE_HEIGHT,
                                          pixel % CONVERGE_REFINE_WIDTH, pixel / CONVERGE_REFINE_WIDTH);
@@ -140,7 +140,7 @@ static void fill_vertices(int n, double *vertices, double *values) {
       }
 }
 
-/* Each small cube in six tetrahedra around its diagonal (Kuhn). */
+/* Cuts each small cube into six tetrahedra around its diagonal (Kuhn). */
 static void fill_cells(int n, int32_t *cells) {
   static const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   const int32_t step[3] = {1, n + 1, (n + 1) * (n + 1)};

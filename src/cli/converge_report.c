@@ -48,7 +48,7 @@ bool converge_write_csv(const Converge *converge, const char *folder) {
 
 /* ── report.md ── */
 
-/* What the processor calls itself. */
+/* The processor's name. */
 static char *processor(void) {
   FILE *file = fopen("/proc/cpuinfo", "r");
   char *line = NULL, *name = NULL;
@@ -67,7 +67,7 @@ static void put_line_of(FILE *file, const char *text) {
     fputc((unsigned char)*c < ' ' || *c == '|' ? ' ' : *c, file);
 }
 
-/* Those that ran, each once. */
+/* Names the kernels that ran, each once. */
 static void put_kernels(FILE *file, const Converge *converge) {
   for (int i = 0; i < converge->count; i++) {
     bool known = false;
@@ -112,7 +112,7 @@ static void put_run(FILE *file, const Converge *converge) {
   free(cpu);
 }
 
-/* Where the reference does not know. */
+/* Says where the reference is undecided. */
 static void put_undecided(FILE *file, const Converge *converge) {
   if (converge->rays_beside + converge->rays_replaced + converge->rays_undecided == 0)
     return;

@@ -9,7 +9,7 @@
 #include "converge.h"
 #include "progress.h"
 
-/* About what one rendering takes, in units of the exact one. */
+/* About how long a rendering takes, in units of the exact one. */
 static double weight(const ConvergeRow *row) {
   switch (row->integrator) {
   case TETCAST_INTEGRATOR_MIDPOINT:
@@ -131,8 +131,8 @@ static TetcastStatus scale_extinction(Converge *converge, double scale, TetcastT
   return status;
 }
 
-/* The pixel of ray number i: three of four show something, by steps of the golden ratio through all of these, the
- * others are any. */
+/* The pixel of ray number i. Three of four rays go through pixels that show something, chosen by steps of the golden
+ * ratio among all such pixels; the fourth goes through any pixel. */
 static int64_t pixel_of(int i, const int64_t *shown, int64_t shown_count, int64_t count) {
   const double at = fmod(0.5 + i * 0.6180339887498949, 1);
   return i % 4 == 3 || shown_count == 0 ? (int64_t)(at * (double)count) : shown[(int64_t)(at * (double)shown_count)];
@@ -177,7 +177,7 @@ static TetcastStatus trace_reference(Converge *converge, const Pictures *picture
   return going ? TETCAST_OK : TETCAST_ERROR_CANCELLED;
 }
 
-/* An exact picture's own error is its difference to the brute-force reference, on that one's rays. */
+/* The error of an exact picture is its difference to the brute-force reference, on the rays of the reference. */
 static void check_exact(Converge *converge, const Pictures *pictures, ConvergeRow *row) {
   const double *pixels = tetcast_frame_pixels(pictures->frame);
   double largest = 0, squares = 0;

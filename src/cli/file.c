@@ -36,7 +36,7 @@ static bool put_text(int descriptor, const char *text) {
 bool cli_file_lock(int descriptor) {
   struct stat status;
   if (flock(descriptor, LOCK_EX | LOCK_NB) != 0)
-    return errno != EWOULDBLOCK; /* a file system without locks has no one who looks for them */
+    return errno != EWOULDBLOCK; /* on a file system without locks nobody looks for them */
   return fstat(descriptor, &status) != 0 || status.st_nlink > 0;
 }
 
@@ -93,7 +93,7 @@ static bool write_beside(const char *path, const char *target, const struct stat
   return done || fail(path, error ? error : EIO);
 }
 
-/* Whether a path stands for something that is open already: a file there is gone on with, not replaced. */
+/* Whether a path stands for something that is open already, which is appended to instead of being replaced. */
 static bool is_open_already(const char *path) {
   static const char *const starts[] = {"/dev/stdout", "/dev/stderr", "/dev/fd/", "/proc/"};
   for (size_t i = 0; i < sizeof starts / sizeof *starts; i++)
@@ -102,7 +102,7 @@ static bool is_open_already(const char *path) {
   return false;
 }
 
-/* text NULL: only whether it could be done. */
+/* Writes a text. With NULL it only checks whether that could be done. */
 static bool write_or_check(const char *path, const char *text) {
   struct stat status;
   if (stat(path, &status) != 0) {

@@ -15,7 +15,7 @@
 
 extern char **environ;
 
-/* What the child is to have of our signals: none blocked, and none ignored but those that nohup and shells ignore. */
+/* The child process has no blocked signals, and ignores only those that nohup and shells ignore. */
 static int reset_signals(posix_spawnattr_t *attributes) {
   sigset_t defaults, none;
   sigemptyset(&defaults);

@@ -176,7 +176,7 @@ static void print_blocks(const Info *info) {
     printf("%-13s %s\n", i ? "" : "blocks", info->vtk->dataset_block(info->dataset, i));
 }
 
-/* What keeps a mesh or its values from being all that they should be, in one line. */
+/* Tells the faults of a mesh and of its values in one line. */
 static void report_defects(const Info *info) {
   const TetcastMeshHealth *health = &info->health;
   const bool mixed = health->inverted_cells > 0 && health->inverted_cells < info->tetrahedra - health->degenerate_cells;
@@ -206,13 +206,13 @@ static void report_defects(const Info *info) {
   free(list);
 }
 
-/* Counts of what is rare are shown only where there is some. */
+/* Counts of rare things are shown only if they are not 0. */
 static void print_some(const char *name, int64_t count, const char *unit) {
   if (count > 0)
     printf("  %-20s %" PRId64 "%s\n", name, count, unit);
 }
 
-/* What is worth knowing about how the cells became tetrahedra. */
+/* Tells how the cells became tetrahedra. */
 static void print_cut(const TetcastCutInfo *cut) {
   const struct {
     const char *name;
@@ -272,7 +272,7 @@ static int print_formats(void) {
   return cli_finish_output();
 }
 
-/* What the command line asks for. */
+/* The options of the command line. */
 typedef struct Request {
   const char *path, *block, *time;
   double merge_tolerance;

@@ -64,7 +64,7 @@ json_t *cli_json_array(const double *values, int count) {
   return array;
 }
 
-/* As people write it: a line for each key and each row of numbers. */
+/* Laid out as people write it, with a line for each key and for each row of numbers. */
 static void put(FILE *file, const json_t *value, int indent) {
   if (json_is_object(value)) {
     const char *separator = "{";

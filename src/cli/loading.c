@@ -11,10 +11,10 @@
 #include <string.h>
 #include <unistd.h>
 
-/* OpenImageIO brings OpenVDB, and that a logger (log4cplus) which starts threads for messages to come while it is
- * loaded. Where the system lets no further thread start it ends the process, though nothing of it is ever used. So
- * while a library is loaded, threads that can't be started are said to have been; they would only have waited for work.
- * At its end such a process leaves at once: the logger would wait for them. */
+/* OpenImageIO is linked with OpenVDB, and OpenVDB with a logger (log4cplus) that starts threads for later messages when
+ * it is loaded. If the system can't start them, the logger ends the process, though nothing of it is ever used. So
+ * while a library is loaded, pthread_create() reports success also if it fails; the threads would only wait for work.
+ * Such a process ends without running what libraries do at the end, as the logger would wait for its threads. */
 static _Thread_local bool loading;
 static atomic_bool pretended;
 
@@ -27,7 +27,7 @@ static atomic_bool pretended;
 #endif
 
 #ifndef HAS_ITS_OWN /* a sanitizer is in this place already */
-/* In the place of the system's, for all libraries of this process. */
+/* Replaces the system's function for all libraries of this process. */
 __attribute__((visibility("default"))) int pthread_create(pthread_t *thread, const pthread_attr_t *attributes,
                                                           void *(*function)(void *), void *data) {
   static int (*_Atomic real)(pthread_t *, const pthread_attr_t *, void *(*)(void *), void *);

@@ -158,7 +158,7 @@ static TetcastStatus make_mesh(const Job *job, TetcastContext *context, const Cl
   return status;
 }
 
-/* The same mesh with its coordinates in single precision. */
+/* Makes the same mesh with its coordinates in single precision. */
 static TetcastStatus make_single(TetcastContext *context, TetcastMesh **mesh) {
   const int64_t count = tetcast_mesh_vertex_count(*mesh);
   float(*vertices)[3] = cli_allocate(sizeof *vertices * (size_t)count);
@@ -215,7 +215,7 @@ static int work(const Job *job, const sigset_t *interruptions, volatile int *pha
     status = make_field(job, context, mesh, &field);
   if (status == TETCAST_OK && cli_verdict(CLI_DONE) == CLI_DONE) {
     *phase = PHASE_WRITE;
-    sigprocmask(SIG_BLOCK, interruptions, NULL); /* or a temporary file would be left */
+    sigprocmask(SIG_BLOCK, interruptions, NULL); /* as a temporary file would be left otherwise */
     const char *const names[] = {job->field.name};
     const TetcastField *const fields[] = {field};
     status = vtk->dataset_write(context, job->output, mesh, job->with_field ? 1 : 0, names, fields);
@@ -271,7 +271,7 @@ static int explain(const Job *job, int status, int phase, const sigset_t *interr
   return CLI_FAILED;
 }
 
-/* TetGen may end its process in ways that nothing can catch, so it gets one that can be spared. */
+/* TetGen may end its process in ways that nothing can catch, so it runs in a process of its own. */
 static int run(const Job *job) {
   volatile int *phase = mmap(NULL, sizeof *phase, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   sigset_t interruptions, awaited, former;

@@ -76,7 +76,7 @@ static void show(const char *kind, const char *place, const char *text) {
   free(line);
 }
 
-/* Keeps a message for later where another thread holds them; false: it is to be shown. */
+/* Keeps a message for later if another thread holds messages. False if it is to be shown now. */
 static bool keep(int kind, const char *place, const char *text) {
   if (!messages.held || pthread_equal(messages.holder, pthread_self()))
     return false;

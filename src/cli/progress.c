@@ -14,11 +14,11 @@ static atomic_int held, caught;
 static struct {
   const char *label;
   double started, drawn;
-  double begin, end; /* of the part, while `whole` */
+  double begin, end; /* where the part begins and ends, while `whole` */
   bool visible, whole;
 } bar = {.end = 1};
 
-/* Once: a signal may come to one thread while another ends the process. */
+/* Does it once: a signal may come to one thread while another one ends the process. */
 static void end(int signal_number) {
   static atomic_flag ending = ATOMIC_FLAG_INIT;
   if (atomic_flag_test_and_set(&ending))

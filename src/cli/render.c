@@ -26,7 +26,7 @@ static void tidy(const RenderOptions *options) {
       cli_file_tidy(outputs[i]);
 }
 
-/* All that can be known to fail before the mesh is read and needs no image library. */
+/* Checks everything that can be checked before the mesh is read and without the image library. */
 static int check(Run *run) {
   RenderOptions *options = &run->options;
   if (!options->output)
@@ -51,14 +51,13 @@ static int check(Run *run) {
       (options->save_scene && !cli_file_check(options->save_scene)))
     return CLI_FAILED;
   if (render_options_given(options, OPTION_EMISSION) && !render_options_given(options, OPTION_BACKGROUND))
-    options->background[0] = options->background[1] = options->background[2] =
-        0; /* what shines is seen against the dark */
+    options->background[0] = options->background[1] = options->background[2] = 0;   /* radiance is shown on black */
   if (options->source >> OPTION_BACKGROUND & 1 && render_options_floating(options)) /* on the command line, that is */
     cli_warning("--background has no effect: floating-point pixels hold the picture without background");
   return cli_verdict(CLI_DONE);
 }
 
-/* Whether the picture can be written where and as it is to be. */
+/* Checks whether the picture can be written to its place and in its format. */
 static int check_image(Run *run) {
   run->image = cli_image();
   if (!run->image)
@@ -83,8 +82,8 @@ static int outcome(int code) {
   return 128 + cli_interrupted();
 }
 
-/* A picture that can't be written is told before anything that is found out about the mesh, and at once: reading, which
- * may take long and can't be stopped, ends with the process. */
+/* If the picture can't be written, that is told at once, before any fault of the mesh. Reading, which may take long and
+ * can't be stopped, ends with the process. */
 static void *check_image_aside(void *argument) {
   Run *run = argument;
   cli_messages_hold(true);
@@ -121,7 +120,7 @@ static int load(Run *run) {
   return code;
 }
 
-/* A picture in which nothing can be seen is worth a word. */
+/* Warns of a picture in which nothing can be seen. */
 static int check_sight(const Run *run) {
   char *fault = sight_fault(run);
   if (fault)

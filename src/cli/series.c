@@ -18,17 +18,17 @@
 
 typedef struct Series {
   Run *run;
-  int64_t count;      /* of steps in the file */
-  int64_t begin, end; /* those to be rendered */
-  double *times;      /* [count]; NULL: the file knows of none */
+  int64_t count;      /* the number of steps in the file */
+  int64_t begin, end; /* the steps to be rendered */
+  double *times;      /* [count]: the time of each step; NULL if the file has none */
   double range[2];
   int64_t densest; /* the step whose values are the largest on average */
-  json_t *entries; /* of the statistics */
+  json_t *entries; /* the steps' entries in the statistics */
   TetcastCamera camera;
-  int64_t loaded; /* the step that the volume is of, -1: none yet */
-  bool held;      /* interruptions are */
-  bool shown;     /* a picture shows something */
-  char *fault;    /* why the first one doesn't; NULL: it does */
+  int64_t loaded; /* the step that the volume is made of; -1 if there is none yet */
+  bool held;      /* whether interruptions wait */
+  bool shown;     /* whether some picture shows something */
+  char *fault;    /* why the first picture shows nothing; NULL if it shows something */
   char label[64], place[32];
 } Series;
 
@@ -97,8 +97,8 @@ static void show_step(Series *series, const char *what, int64_t step) {
   cli_set_place(series->count > 1 ? series->place : NULL);
 }
 
-/* Signals end the process at once while a step is read; from its preparation on they wait until what is being done is
- * done. */
+/* While a step is read, signals end the process at once. From its preparation on they wait until the work in progress
+ * is finished. */
 static void let_go(Series *series) {
   if (!series->held)
     return;

@@ -16,8 +16,8 @@ static const double degree = 3.14159265358979323846 / 180;
 typedef struct Probe {
   const Run *run;
   TetcastScene *uniform; /* the mesh without cells that touch a NaN; NULL: coefficients, which have a channel for it */
-  double extinction;     /* of it */
-  double size;           /* of the mesh: the diagonal of its bounds */
+  double extinction;     /* the extinction of that matter */
+  double size;           /* the diagonal of the mesh's bounds */
 } Probe;
 
 /* ── what the pixels say ── */
@@ -33,11 +33,11 @@ static void load_pixel(const TetcastFrame *frame, int64_t number, double rgba[4]
 
 typedef struct Look {
   double most_alpha, most_color;
-  bool seen;        /* a pixel is other than the background */
-  bool translucent; /* there is one that is neither empty nor opaque */
+  bool seen;        /* whether some pixel differs from the background */
+  bool translucent; /* whether some pixel is neither empty nor opaque */
 } Look;
 
-/* Looks at pixels, from the middle on, until there is nothing to complain of. */
+/* Looks at pixels, from the middle on, until it is clear that the picture shows something. */
 static Look look_at(const Run *run) {
   const TetcastFrame *frame = run->frame;
   const bool floating = render_options_floating(&run->options);
@@ -184,7 +184,7 @@ static double dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Where the mesh lies, seen from a camera whose rays don't meet it. */
+/* Tells where the mesh lies, as seen from a camera whose rays don't meet it. */
 static const char *explain_camera(const Run *run) {
   const TetcastCamera *camera = &run->stage.camera;
   const double *bounds = run->stage.info.bounds, aspect = run->options.size[0] / run->options.size[1];

@@ -26,7 +26,7 @@ int stage_begin(Stage *stage, const RenderOptions *options) {
   return cli_verdict(CLI_DONE);
 }
 
-/* Which array is drawn, where that was not said and there are others. */
+/* Tells which array is drawn if none was named and there are several. */
 static void tell_choice(const Stage *stage) {
   TetcastDatasetArray array, chosen = {.association = TETCAST_POINT};
   char *others = NULL;
@@ -36,7 +36,7 @@ static void tell_choice(const Stage *stage) {
       chosen = array;
       continue;
     }
-    if (++count > 8) /* the line is to be read */
+    if (++count > 8) /* more of them would make the line unreadable */
       continue;
     char *longer = cli_print("%s%s%s", others ? others : "", others ? ", " : "", count == 8 ? "…" : array.selector);
     free(others);

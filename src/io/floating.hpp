@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What adapters have in common with the core in a host that is not ours: the floating-point environment.
+// The floating-point environment, which adapters handle as the core does (base/floating.h).
 #ifndef TCIO_FLOATING_HPP
 #define TCIO_FLOATING_HPP
 
 #include <cfenv>
 
-// While it lives, the default environment is set: results don't depend on the host's rounding, and no exception of VTK,
-// TetGen or OpenImageIO is trapped. Then the host's is as it was, flags included. The first thing in what a public
-// function does.
+// While an object lives, the default environment is set, so that results don't depend on the host's rounding and no
+// exception of VTK, TetGen or OpenImageIO is trapped. Then the host's environment is as it was, flags included. Every
+// public function begins with one.
 class FloatingPoint {
 public:
   FloatingPoint() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The file underneath a picture: errors noticed whichever library writes it, and nothing half-written under the final
-// name.
+// The file that a picture is written to. Errors are noticed whichever library writes it, and nothing half-written
+// appears under the final name.
 #ifndef TETCAST_OPENIMAGEIO_OUTPUT_HPP
 #define TETCAST_OPENIMAGEIO_OUTPUT_HPP
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What TetGen fills: a piecewise linear complex, and where it comes from.
+// A piecewise linear complex, which TetGen fills with tetrahedra, and where it comes from.
 #ifndef TETCAST_IO_TETGEN_PLC_H
 #define TETCAST_IO_TETGEN_PLC_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the cells of a grid to tetrahedra.
+// Turns the cells of a grid into tetrahedra.
 #ifndef TETCAST_VTK_CELLS_HPP
 #define TETCAST_VTK_CELLS_HPP
 
@@ -25,19 +25,20 @@ struct CutDeleter {
 };
 
 struct Tetrahedra {
-  TetcastArray view = {};                                  // [m, 4] into one of the next two
-  vtkSmartPointer<vtkDataArray> connectivity;              // the file's own, when all its cells are tetrahedra
-  std::unique_ptr<TetcastContext, ContextDeleter> context; // of the next
+  TetcastArray view = {};                                  // [m, 4]: a view of one of the next two
+  vtkSmartPointer<vtkDataArray> connectivity;              // the file's own array, if all its cells are tetrahedra
+  std::unique_ptr<TetcastContext, ContextDeleter> context; // the context of `cut`
   std::unique_ptr<TetcastCut, CutDeleter> cut;
-  TetcastArray source = {}; // [m] int32: the cell of the file that each tetrahedron is of; empty: its own
-  std::vector<std::pair<const char *, int64_t>> types; // of the file's cells, largest count first
-  TetcastCutInfo info = {};                            // all 0 when nothing was cut
+  // [m] int32: the file's cell that each tetrahedron is a part of; empty if all its cells are tetrahedra.
+  TetcastArray source = {};
+  std::vector<std::pair<const char *, int64_t>> types; // the types of the file's cells, largest count first
+  TetcastCutInfo info = {};                            // all 0 if nothing was cut
 };
 
 bool is_volume(int type); // whether cells of this type of VTK's become tetrahedra
 
 struct CutOptions {
-  int subdivision = 0; // of curved cells, as in TetcastCellsDesc
+  int subdivision = 0; // as in TetcastCellsDesc
   int threads = 0;
 };
 

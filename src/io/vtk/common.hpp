@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the files of this adapter share: errors, VTK's complaints, telling formats apart, checking what VTK hands out.
+// What the files of this adapter share: errors, VTK's complaints, telling formats apart, checking VTK's results.
 #ifndef TETCAST_VTK_COMMON_HPP
 #define TETCAST_VTK_COMMON_HPP
 
@@ -47,7 +47,7 @@ template <typename Body> TetcastStatus fence(TetcastContext *context, const char
   }
 }
 
-// While one lives, what VTK says on this thread comes here and is printed nowhere. One a thread at a time.
+// While an object lives, VTK's messages on this thread come here and are printed nowhere. A thread has one at a time.
 class Capture {
 public:
   Capture();
@@ -56,7 +56,7 @@ public:
   Capture &operator=(const Capture &) = delete;
 
   bool failed() const { return failed_; }
-  const std::string &error() const { return error_; }     // the first; empty if there was none
+  const std::string &error() const { return error_; }     // the first error; empty if there was none
   const std::string &warning() const { return warning_; } // the first; empty if there was none
   void add(const char *text, bool is_error) noexcept;
 
@@ -66,7 +66,8 @@ private:
   std::string error_, warning_;
 };
 
-// While one lives, errors that this thread's capture gets are put aside: what is being read may fail without the rest.
+// While an object lives, errors of this thread's capture are put aside: for reading something that may fail without the
+// rest failing.
 class Doubt {
 public:
   Doubt();
@@ -83,7 +84,7 @@ private:
   std::string error_; // of before
 };
 
-// What `read` returns; fails if VTK complains while it runs, and passes on what VTK warns of.
+// Returns the result of `read`. Fails if VTK reports an error while it runs, and passes on VTK's warnings.
 template <typename Read> auto captured(TetcastContext *context, const char *path, Read &&read) {
   const Capture capture;
   auto result = read();
@@ -95,12 +96,13 @@ template <typename Read> auto captured(TetcastContext *context, const char *path
   return result;
 }
 
-// Fails unless `path` is a readable, non-empty regular file. Returns its first bytes (64 KiB at most).
+// Fails unless `path` is a readable, non-empty regular file. Returns its first bytes, at most 64 KiB.
 std::string file_head(const char *path);
 std::string file_contents(const char *path);
 int64_t file_size(const char *path); // 0 if there is no such file
 
-// What the content says the file is: "VTKFile UnstructuredGrid", "vtk POLYDATA", "PLY", "OFF", "STL", "HDF5", "NetCDF",
+// The kind of file that the content tells: "VTKFile UnstructuredGrid", "vtk POLYDATA", "PLY", "OFF", "STL", "HDF5",
+// "NetCDF",
 // "" …
 std::string file_kind(const std::string &head);
 bool is_surface(const std::string &kind);
@@ -109,10 +111,10 @@ bool parse_number(const char *first, const char *last,
 double number_of(const std::string &text);                   // decimal, the same in every locale; NaN: is none
 bool has_extension(const char *path, const char *extension); // ".vtu", in any case of letters
 
-// Refuses a kind of content that no reader of this call takes.
+// Refuses content that none of this call's readers can read.
 [[noreturn]] void refuse(const char *path, const std::string &kind, const char *wanted, const char *extensions);
 
-// Each fails with the first offence and its place.
+// Each of these fails with the first fault and its place.
 int64_t first_nonfinite(vtkDataArray *data);               // value, of all components; -1: there is none
 void check_dimension(const char *path, vtkPoints *points); // three coordinates each
 void check_points(const char *path, vtkPoints *points);    // and finite ones

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a file of any format to the pieces it holds, and from these to one grid.
+// Reads the pieces of a file of any format, and puts them together to one grid.
 #ifndef TETCAST_VTK_CONTENTS_HPP
 #define TETCAST_VTK_CONTENTS_HPP
 
@@ -23,17 +23,17 @@ using Grid = vtkSmartPointer<vtkUnstructuredGrid>;
 struct Piece {
   std::string place; // for messages: the file, and the block where there are several
   Grid grid;
-  int block = -1; // the number of its block among all there are; -1: it is of none
+  int block = -1; // the number of its block among all blocks of the file; -1 if it is of no block
 };
 
-// What a file holds, of that what was asked for.
+// The contents of a file, as far as they were asked for.
 struct Contents {
   std::vector<Piece> pieces;
-  std::vector<std::string> blocks; // names of all there are
-  std::vector<double> times;       // of all steps, ascending
+  std::vector<std::string> blocks; // the names of all blocks
+  std::vector<double> times;       // the times of all steps, ascending
   int64_t step = 0;
-  int64_t surfaces = 0;            // parts that were left out as they are known to be no volume
-  std::vector<UnreadArray> unread; // arrays that there are in the file and not in the pieces
+  int64_t surfaces = 0;            // the number of parts left out as they have no volume
+  std::vector<UnreadArray> unread; // arrays of the file that the pieces don't have
 };
 
 // One file being read, perhaps on behalf of another that lists it.
@@ -42,7 +42,7 @@ struct Reading {
   const TetcastDatasetDesc *desc;
   std::string path;
   std::string block; // that the file is in another, "" if it is none
-  int depth;         // of files that list files
+  int depth;         // how many files that list files lead to it
 };
 
 // Reads in whatever format the file is in, and adds to `contents`.
@@ -52,16 +52,16 @@ void read_part(const Reading &of, const std::string &path, const std::string &bl
 // Adds a grid of any kind.
 void add_grid(const Reading &reading, const std::string &block, vtkDataSet *grid, Contents *contents);
 
-// Adds the name of a block there is, of which the pieces come one after the other.
+// Adds the name of a block, whose pieces follow.
 void list_block(const std::string &block, Contents *contents);
 
 // Whether block `path` is asked for by --block `name` (NULL: all are): it has these components, one after the other.
 bool block_wanted(const std::string &path, const char *name);
 
-// Which of the steps is asked for; fails if there is no such.
+// The number of the step that is asked for. Fails if there is no such step.
 int64_t choose_step(const std::string &path, const TetcastDatasetDesc &desc, const std::vector<double> &times);
 
-// A structured grid as hexahedra, with the arrays it has; null for flat ones and other kinds of dataset.
+// Turns a structured grid into hexahedra, with its arrays. Null for flat grids and other kinds of dataset.
 Grid to_hexahedra(const std::string &place, vtkDataSet *dataset);
 
 // Puts the pieces together, which are consumed. A lone piece without ghosts stays as it is. Arrays of the wrong length

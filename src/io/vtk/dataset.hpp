@@ -29,7 +29,7 @@ struct Array {
 
 } // namespace tcv
 
-// VTK's arrays are kept, its grid is not.
+// A dataset keeps VTK's arrays, but not its grid.
 struct TetcastDataset {
   TetcastContext *context = nullptr;
   std::string path;
@@ -40,12 +40,13 @@ struct TetcastDataset {
   int64_t step = 0;
   vtkSmartPointer<vtkDataArray> points; // float32 or float64
   tcv::Tetrahedra tetrahedra;
-  std::vector<tcv::Array> arrays;              // point arrays first
-  std::vector<tcv::UnreadArray> unread;        // others that there are in the file
-  vtkSmartPointer<vtkCellArray> corners;       // of the file's cells, and
-  vtkSmartPointer<vtkUnsignedCharArray> types; // theirs; null unless cell arrays are to be averaged
-  mutable std::mutex mutex;                    // guards the next
-  mutable std::set<std::string> selectors;     // that were handed out
+  std::vector<tcv::Array> arrays;       // point arrays first
+  std::vector<tcv::UnreadArray> unread; // arrays of the file that were not read
+  // The corners and the types of the file's cells; null unless cell arrays are averaged.
+  vtkSmartPointer<vtkCellArray> corners;
+  vtkSmartPointer<vtkUnsignedCharArray> types;
+  mutable std::mutex mutex;                // guards the next
+  mutable std::set<std::string> selectors; // that were handed out
 };
 
 #endif

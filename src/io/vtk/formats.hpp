@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the table of formats has: a function for each kind of content.
+// The functions of the table of formats, one for each kind of content.
 #ifndef TETCAST_VTK_FORMATS_HPP
 #define TETCAST_VTK_FORMATS_HPP
 

@@ -12,7 +12,7 @@
 
 namespace tcv {
 
-// Where reading has got to in a file whose bytes are in memory. A copy of one is a place to come back to.
+// A place in a file whose bytes are in memory, from which is read. A copy is a place to come back to.
 class GmshCursor {
 public:
   GmshCursor(const char *path, const std::string &bytes)
@@ -28,7 +28,7 @@ public:
   double text_number(const char *what);
 
   // ── numbers, which are text or bytes ──
-  void begin_bytes() { binary_ = true; } // from here on those below are bytes
+  void begin_bytes() { binary_ = true; } // from here on numbers are bytes
   void swap_bytes() { swapped_ = true; }
   bool binary() const { return binary_; }
   int64_t integer(const char *what); // of four bytes
@@ -50,12 +50,12 @@ private:
   bool binary_ = false, swapped_ = false;
 };
 
-// Tags, which are any numbers, as indices from 0. As long as they ascend by one, nothing is stored.
+// Turns tags, which may be any numbers, into indices from 0. As long as tags ascend by one, nothing is stored.
 class GmshTags {
 public:
   void add(int64_t tag, int64_t index);
   int64_t find(int64_t tag); // -1: there is no such tag
-  bool twice(int64_t *tag);  // whether one is there twice
+  bool twice(int64_t *tag);  // whether some tag is there twice
 
 private:
   void sort();

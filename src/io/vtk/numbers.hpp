@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers as text in streams, with those that C++'s own reading refuses: NaN and infinities as any program writes them,
-// what is beyond the range of a type, Fortran's exponents.
+// Reads numbers as text from streams, also those that C++'s own reading refuses: NaN and infinities as any program
+// writes them, numbers beyond the range of a type, Fortran's exponents.
 #ifndef TETCAST_VTK_NUMBERS_HPP
 #define TETCAST_VTK_NUMBERS_HPP
 

@@ -163,8 +163,8 @@ static bool listen(const Reading &reading, const char *format, WireReader *wire,
         break;
       }
       case WIRE_KNOWN:
-      case WIRE_LOST:
-        take_unread(wire, record == WIRE_LOST, contents);
+      case WIRE_UNREADABLE:
+        take_unread(wire, record == WIRE_UNREADABLE, contents);
         break;
       case WIRE_TIMES:
         contents->times.clear();

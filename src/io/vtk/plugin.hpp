@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formats that programs of their own read: what the library asks them for.
+// Formats that programs of their own read: what the library asks these programs for.
 #ifndef TETCAST_VTK_PLUGIN_HPP
 #define TETCAST_VTK_PLUGIN_HPP
 
@@ -15,8 +15,8 @@ namespace tcv {
 
 struct PluginRequest {
   std::string path;
-  std::string place;                            // the block that the file is in, "" if it is none
-  const char *block = nullptr, *only = nullptr; // of the description
+  std::string place;                            // the block that the file is a part of, "" if there is none
+  const char *block = nullptr, *only = nullptr; // as in TetcastDatasetDesc
   int64_t step = 0;
   double time = std::nan("");
   bool displace = true;
@@ -28,7 +28,7 @@ struct PluginRequest {
 std::vector<std::string> arguments_of(const PluginRequest &request);
 PluginRequest request_of(char **arguments);
 
-// Which of the steps is asked for; fails if there is no such.
+// The number of the step that is asked for. Fails if there is no such step.
 int64_t choose_step(const std::string &path, int64_t step, double time, const std::vector<double> &times);
 
 bool plugin_exists(const char *name);

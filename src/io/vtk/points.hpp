@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the points of pieces go in the one grid that is made of them.
+// Finds where the points of pieces go in the one grid that is made of them.
 #ifndef TETCAST_VTK_POINTS_HPP
 #define TETCAST_VTK_POINTS_HPP
 

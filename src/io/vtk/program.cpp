@@ -198,7 +198,7 @@ void tell_failure(TetcastStatus status, const std::string &text, tcv::WireWriter
 }
 
 void tell_lost(const tcv::UnreadArray &one, tcv::WireWriter *wire) {
-  wire->record(tcv::WIRE_LOST);
+  wire->record(tcv::WIRE_UNREADABLE);
   wire->number(one.array.association);
   wire->text(one.array.name);
   wire->text(one.reason);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A format whose reader brings libraries of its own, and crashes on some damaged files: a program of its own reads it,
-// tetcast-vtk-NAME, which the library starts for each file (plugin.cpp) and which hands over what it has read
+// A format whose reader needs libraries of its own, or crashes on some damaged files. It is read by a program of its
+// own, tetcast-vtk-NAME, which the library starts for each file (plugin.cpp) and which sends what it has read
 // (program.cpp).
 #ifndef TETCAST_VTK_SOURCE_HPP
 #define TETCAST_VTK_SOURCE_HPP
@@ -21,7 +21,7 @@
 
 namespace tcv {
 
-// One file of the format. What fails says so through VTK, or by an exception.
+// A file of the format. Its functions report failure through VTK or by an exception.
 class Source {
 public:
   virtual ~Source() = default;

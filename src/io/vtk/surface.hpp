@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the readers of surface files fill.
+// A surface as its readers fill it.
 #ifndef TETCAST_VTK_SURFACE_HPP
 #define TETCAST_VTK_SURFACE_HPP
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a reader program tells the library that started it, over a pipe, in the machine's own order of bytes: records of
-// a letter and what belongs to it. Both ends are of one build.
+// What a reader program sends to the library that started it, over a pipe, in the machine's own order of bytes:
+// records, each of a letter and its data. Both ends are of one build.
 #ifndef TETCAST_VTK_WIRE_HPP
 #define TETCAST_VTK_WIRE_HPP
 
@@ -18,22 +18,22 @@ namespace tcv {
 
 // The letters.
 enum WireRecord : char {
-  WIRE_TRY = 't',    // text: what is tried next, which may end the program: an array's name, or nothing. Number: its
-                     // association, −1 without
-  WIRE_KNOWN = 'k',  // number, text: an array that there is and was not asked for
-  WIRE_LOST = 'l',   // number, text, text: an array that can't be read, and why
-  WIRE_TIMES = 's',  // number of times, these, the step
-  WIRE_WARN = 'w',   // text: a warning of VTK's
-  WIRE_BLOCK = 'b',  // text: its name; a block that is not wanted
-  WIRE_FLAT = 'f',   // text: its name; a block without volume
-  WIRE_GRID = 'g',   // text: its name; grid
-  WIRE_END = 'e',    // all has been told
-  WIRE_FAILED = 'x', // number, text: a status, and what is wrong with the file
-  WIRE_OTHER = 'o',  // the file is not of the format
-  WIRE_ENDLESS = 'h' // VTK's reader does not come to an end
+  WIRE_TRY = 't',   // text: what is tried next, which may end the program: an array's name, or nothing. Number: its
+                    // association, −1 without
+  WIRE_KNOWN = 'k', // number, text: an array of the file that was not asked for
+  WIRE_UNREADABLE = 'l', // number, text, text: an array that can't be read, and why
+  WIRE_TIMES = 's',      // number of times, these, the step
+  WIRE_WARN = 'w',       // text: a warning of VTK's
+  WIRE_BLOCK = 'b',      // text: its name; a block that is not wanted
+  WIRE_FLAT = 'f',       // text: its name; a block without volume
+  WIRE_GRID = 'g',       // text: its name; grid
+  WIRE_END = 'e',        // the end of all records
+  WIRE_FAILED = 'x',     // number, text: a status, and what is wrong with the file
+  WIRE_OTHER = 'o',      // the file is not of the format
+  WIRE_ENDLESS = 'h'     // VTK's reader doesn't end
 };
 
-// Bytes go out when there are many, and at flush(). What can't be written ends the program: nobody is there to read it.
+// Sends bytes when there are many, and at flush(). If that fails, it ends the program, as there is nobody to read them.
 class WireWriter {
 public:
   explicit WireWriter(int file) : file_(file) {}
