@@ -847,6 +847,13 @@ static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderD
       continue;
     if (info->needs_coefficients && !c)
       return ARGUMENT(context, "with a transfer function there is no channel %s", info->name);
+    if (info->needs_composite && (c || scene->blend))
+      return ARGUMENT(context, "the channel %s needs a transfer function or surfaces, and the blend mode composite",
+                      info->name);
+    if (info->needs_composite && !exact)
+      return ARGUMENT(context, "the channel %s is known to the exact integrator only", info->name);
+    if (info->needs_composite && error)
+      return ARGUMENT(context, "there is no channel for the error together with the channel %s", info->name);
     if (info->needs_blend && !scene->blend)
       return ARGUMENT(context, "with the blend mode composite there is no channel %s", info->name);
     if (info->of_groups && frame->groups != c->groups) {

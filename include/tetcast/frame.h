@@ -38,7 +38,13 @@ typedef enum TetcastChannel {
   /* Of scenes in a blend mode other than composite: the value that the blend mode makes of the scalar, in the scalar's
    * unit, or in that times the mesh's unit of length. With several samples it is the mean of those that have a value;
    * NaN if none has. */
-  TETCAST_CHANNEL_VALUE = 32
+  TETCAST_CHANNEL_VALUE = 32,
+
+  /* Of a scene with a transfer function or surfaces: the distance along the ray at which alpha first exceeds 1/2, or at
+   * which the ray meets the first surface whose opacity is at least 1/2, whichever comes first, in the mesh's unit of
+   * length: from the eye, or, of an orthographic camera, from the plane through it. Infinite where neither is; of
+   * several samples the mean of those where it is not. Not together with TETCAST_CHANNEL_ERROR. */
+  TETCAST_CHANNEL_DEPTH = 64
 } TetcastChannel;
 
 /* The most groups that coefficients may have. */
@@ -70,14 +76,19 @@ typedef struct TetcastFrameDesc {
 typedef struct TetcastChannelInfo {
   /* The channel's bit. */
   TetcastChannel channel;
-  /* The name by which the command and picture files call it. In static storage, never NULL. */
+  /* The name by which the command calls it. In static storage, never NULL. */
   const char *name;
+  /* The name that it has in picture files, as users of OpenEXR expect it, with a number behind it for each of several
+   * groups. In static storage, never NULL. */
+  const char *file_name;
   /* A sentence that says what it is. In static storage, never NULL. */
   const char *description;
   /* Not 0 if it has a value for each group, 0 if it has one. */
   int of_groups;
   /* Not 0 if only scenes with coefficients have it. */
   int needs_coefficients;
+  /* Not 0 if only scenes with a transfer function or surfaces, in the blend mode composite, have it. */
+  int needs_composite;
   /* Not 0 if only scenes in a blend mode other than composite have it. */
   int needs_blend;
 } TetcastChannelInfo;

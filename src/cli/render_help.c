@@ -33,7 +33,7 @@ const char render_help[] =
     "      --clip nx,ny,nz,d   shows what has n.x >= d; repeatable   --clip-box x0,x1,y0,y1,z0,z1\n"
     "      --stop-depth FILE   rays stop at these distances: channel Z of an .exr or .tif\n"
     "      --integrator I      exact, midpoint:N, trapezoid:N, gauss:N or table:N   --tolerance EPS   0: exact\n"
-    "      --channels LIST     error: its bound; with extinction or emission also radiance,optical_depth,\n"
+    "      --channels LIST     error: its bound; depth; with extinction or emission also radiance,optical_depth,\n"
     "                          transmittance,path_length; with --blend: value; .exr and .tif\n"
     "      --traversal T       shell (default) or faces         --isa SET       at most: scalar … avx512\n"
     "      --threads N         0, the default: all              --repeat N      for timing\n"

@@ -106,7 +106,8 @@ const RenderRow render_table[OPTION_COUNT] = {
                           .form = "expected a number, 0 or above"},
     [OPTION_CHANNELS] =
         {"channels", KIND_TEXT, AT(channels), .only = COMMAND_RENDER,
-         .form = "expected error, or value, or of radiance, optical_depth, transmittance and path_length some"},
+         .form =
+             "expected error, or depth, or value, or of radiance, optical_depth, transmittance and path_length some"},
     [OPTION_TRAVERSAL] = {"traversal", KIND_CHOICE, AT(traversal), .names = traversals,
                           .form = "expected shell or faces"},
     [OPTION_ISA] = {"isa", KIND_CHOICE, AT(isa), .names = isas, .form = "expected auto, scalar, avx2 or avx512"},

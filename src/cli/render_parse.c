@@ -23,6 +23,8 @@ static const char *command_name(const RenderOptions *options) {
 /* What of coefficients and what of a transfer function doesn't go together. NULL: nothing. */
 static const char *find_mixture(const RenderOptions *options) {
   const uint32_t channels = render_options_channels(options);
+  if (channels & TETCAST_CHANNEL_DEPTH && channels & TETCAST_CHANNEL_ERROR)
+    return "--channels: error and depth are not possible in one picture";
   if (render_options_surfaces(options)) {
     if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
       return "--isosurface, --slice, --surface: need --blend composite";
@@ -52,10 +54,12 @@ static const char *find_mixture(const RenderOptions *options) {
     for (int i = 0;
          (info = tetcast_channel_info(i)) && !(channels & (uint32_t)info->channel && info->needs_coefficients);)
       i++;
-    return info ? "--channels: only error is possible without --extinction or --emission" : NULL;
+    return info ? "--channels: only error or depth is possible without --extinction or --emission" : NULL;
   }
   if (options->integrator && strcmp(options->integrator, "exact"))
     return "--integrator: with --extinction or --emission there is only exact";
+  if (channels & TETCAST_CHANNEL_DEPTH)
+    return "--channels depth: not possible with --extinction or --emission";
   if (channels & TETCAST_CHANNEL_VALUE)
     return "--channels value: not possible with --extinction or --emission";
   if (channels & TETCAST_CHANNEL_RADIANCE && !render_options_given(options, OPTION_EMISSION))

@@ -108,6 +108,8 @@ TC_INLINE void tc_emission_part(const unsigned on, TcEmission *e, TcReal thin, T
               a1 = tc_madd(far, piece->rise, piece->extinction) * length;
   const TcVec half_a = (TcReal)0.5 * a, half_a1 = (TcReal)0.5 * a1, depth = half_a + half_a1;
   e->block_depth += depth;
+  if (on & TC_SURFACES)
+    tc_layers_descend(&e->layers, mask, a, a1, depth, length);
   if (!(on & TC_COLORED))
     return;
   const TcSegments segments = tc_segments(mask, a, a1, depth, half_a1 - half_a, thin);
@@ -149,6 +151,8 @@ TC_NOINLINE void tc_emission_parts(const unsigned on, const TcGatherJob *job, Tc
       tc_emission_part(on, e, (TcReal)job->tolerance.thin, mask, tc_select(mask, part, zero),
                        tc_select(mask, done, piece->from), tc_select(mask, to, piece->from));
     }
+    if (on & TC_SURFACES)
+      e->layers.position += tc_select(mask, part, zero);
     if (!tc_any(crossing))
       return;
     const TcInt next = tc_select_int(up, piece->above, piece->below);
@@ -198,6 +202,8 @@ TC_INLINE void tc_emission_stretch(const unsigned on, const TcGatherJob *job, Tc
     near *= piece->scale;
   const TcVec depth = tc_madd(near, piece->rise, piece->extinction) * length;
   e->block_depth += depth;
+  if (on & TC_SURFACES)
+    tc_layers_descend(&e->layers, mask, depth, depth, depth, length);
   if (!(on & TC_COLORED))
     return;
   const TcVec weight = e->block_transmittance * tc_segments_opacity(depth), moment = weight * near;
@@ -233,6 +239,9 @@ TC_NOINLINE void tc_emission_boundary(const TcGatherJob *job, TcEmission *e, TcM
     tc_meet_boundary(job, passage, l, id, (double)TC_AT(*s, l), &meeting);
   }
   tc_emission_surface(e, mask, &meeting);
+  const TcVec depth = enter ? passage->entry->z : passage->walk->at.z;
+  if (job->surfaces->depth)
+    tc_layers_step(&e->layers, mask, &meeting.opacity, &depth);
 }
 
 /* The lanes of `mask` meet an isosurface or, those of `slices`, a slice, at `fraction` of what counts of their cells.
@@ -251,6 +260,9 @@ TC_NOINLINE void tc_emission_within(const TcGatherJob *job, TcEmission *e, TcMas
     }
   }
   tc_emission_surface(e, mask, &meeting);
+  const TcVec depth = tc_madd(*fraction, tc_select(mask, passage->length, tc_set(0)), passage->begin);
+  if (job->surfaces->depth)
+    tc_layers_step(&e->layers, mask, &meeting.opacity, &depth);
   if (tc_any(slices))
     tc_layers_next_slice(job->surfaces, passage->walk, slices, true, e->layers.slice, &e->layers);
 }
@@ -295,6 +307,7 @@ TC_NOINLINE void tc_emission_meet(const unsigned on, const TcGatherJob *job, TcE
     at = tc_select(first, tc_min(slice_at, one), at);
     even = tc_or(even, first);
     const TcVec share = tc_select(even, at - done, tc_abs(to - from) * ratio);
+    layers->position = tc_madd(done, length, passage->begin);
     tc_emission_stretch(on, job, e, tc_and(mask, left), length * share, from, to, spread * share);
     const TcMask met = tc_or(crossing, first);
     if (!tc_any(met))
@@ -332,6 +345,8 @@ TC_INLINE void tc_emission_segment(const unsigned on, const TcGatherJob *job, Tc
     tc_emission_meet(on, job, e, mask, &scalar0, &scalar1, passage);
     return;
   }
+  if (on & TC_SURFACES)
+    e->layers.position = passage->begin;
   tc_emission_stretch(on, job, e, mask, passage->length, s0, s1, on & TC_BOUND ? passage->spread : tc_set(0));
 }
 
@@ -388,6 +403,11 @@ TC_INLINE void tc_emission_end(const unsigned on, const TcGatherJob *job, TcEmis
       memcpy(sums[k], e->color[k], sizeof e->color[k]);
     else
       TC_EACH_LANE sums[k][l] = sums[3][l] * job->pieces->largest[k];
+  }
+  for (int l = 0; on & TC_SURFACES && job->sums == 6 && l < TC_LANES; ++l) {
+    const double depth = (double)TC_AT(e->layers.depth, l);
+    sums[5][l] = depth < INFINITY;
+    sums[4][l] = depth < INFINITY ? depth + TC_AT(ending->start, l) : 0;
   }
   if (!(on & TC_BOUND))
     return;

@@ -73,6 +73,7 @@ typedef struct TcEnding {
   unsigned stopped; /* the lanes that were complete before they had crossed everything */
   int64_t steps;    /* the number of steps that the packet has made */
   TcVec shift;      /* with TC_BOUND: TcPacket.shift */
+  TcWide start;     /* with TC_SURFACES: TcPacket.start */
 } TcEnding;
 
 /* The scalar of the cells in the lanes of `mask`; other lanes get that of some cell. */

@@ -10,8 +10,11 @@
  * counts doesn't know yet: its `low` is ∞. */
 typedef struct TcLayers {
   TcVec low, high;
-  TcVec slice;     /* the depth of the next slice */
-  TcVec veil;      /* what the surfaces so far let through */
+  TcVec slice; /* the depth of the next slice */
+  TcVec veil;  /* what the surfaces so far let through */
+  /* If the depth is wanted: the optical depth that is missing until alpha is one half, ∞ once it is; the depth where it
+   * is, ∞ until then; the depth where the stretch under way begins. */
+  TcVec missing, depth, position;
   TcMask entering; /* lanes that set out from the shell */
   int below[TC_LANES];
 } TcLayers;
@@ -20,7 +23,34 @@ TC_INLINE void tc_layers_begin(TcLayers *layers) {
   layers->low = layers->high = tc_set((TcReal)INFINITY);
   layers->slice = layers->low;
   layers->veil = tc_set(1);
+  layers->missing = tc_set((TcReal)0.69314718055994530942);
+  layers->depth = layers->position = layers->low;
   layers->entering = tc_none();
+}
+
+/* A stretch of this length with extinctions that go from a / length to a1 / length. With m missing, alpha is one half
+ * at the fraction u for which a u + (a1 − a) u²/2 = m; written so, the root has no difference of like numbers. */
+TC_INLINE void tc_layers_descend(TcLayers *layers, TcMask mask, TcVec a, TcVec a1, TcVec depth, TcVec length) {
+  const TcMask half = tc_and(mask, tc_lt(layers->missing, depth));
+  if (TC_UNLIKELY(tc_any(half))) {
+    const TcVec twice = layers->missing + layers->missing;
+    const TcVec u = twice / (a + tc_sqrt(tc_max(tc_set(0), tc_madd(a1 - a, twice, a * a))));
+    layers->depth = tc_select(half, tc_madd(tc_min(u, tc_set(1)), length, layers->position), layers->depth);
+  }
+  layers->missing =
+      tc_select(half, tc_set((TcReal)INFINITY), tc_select(mask, layers->missing - depth, layers->missing));
+}
+
+/* The lanes of `mask` meet surfaces of these opacities at this depth. */
+TC_NOINLINE void tc_layers_step(TcLayers *layers, TcMask mask, const TcVec *opacity, const TcVec *depth) {
+  for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
+    const int l = __builtin_ctz(lanes);
+    const double alpha = (double)TC_AT(*opacity, l), missing = (double)TC_AT(layers->missing, l), more = -log1p(-alpha);
+    const bool half = missing < INFINITY && (alpha >= 0.5 || missing < more);
+    if (half)
+      TC_AT(layers->depth, l) = TC_AT(*depth, l);
+    TC_AT(layers->missing, l) = (TcReal)(half ? INFINITY : missing - more);
+  }
 }
 
 TC_INLINE void tc_layers_forget(TcLayers *layers, TcMask mask) {

@@ -29,15 +29,33 @@ static double value_of(const TcGathered *g, int i) {
   return g->sums[1] > 0 ? ldexp(g->sums[0] / g->sums[1], g->value_exponent) : NAN;
 }
 
+static double depth_of(const TcGathered *g, int i) {
+  (void)i;
+  return g->sums[5] > 0 ? ldexp(g->sums[4] / g->sums[5], g->exponent) : INFINITY;
+}
+
 const TcChannel tc_channels[TC_CHANNELS] = {
-    {{TETCAST_CHANNEL_RADIANCE, "radiance", "radiance, in the emission's unit times length", 1, 1, 0}, radiance_of},
-    {{TETCAST_CHANNEL_OPTICAL_DEPTH, "optical_depth", "optical depth through all of the mesh", 1, 1, 0},
+    {{TETCAST_CHANNEL_RADIANCE, .name = "radiance", .file_name = "radiance", .of_groups = 1, .needs_coefficients = 1,
+      .description = "radiance, in the emission's unit times length"},
+     radiance_of},
+    {{TETCAST_CHANNEL_OPTICAL_DEPTH, .name = "optical_depth", .file_name = "optical_depth", .of_groups = 1,
+      .needs_coefficients = 1, .description = "optical depth through all of the mesh"},
      optical_depth_of},
-    {{TETCAST_CHANNEL_TRANSMITTANCE, "transmittance", "exp(-optical depth)", 1, 1, 0}, transmittance_of},
-    {{TETCAST_CHANNEL_PATH_LENGTH, "path_length", "length of the ray in cells, in the mesh's unit", 0, 1, 0},
+    {{TETCAST_CHANNEL_TRANSMITTANCE, .name = "transmittance", .file_name = "transmittance", .of_groups = 1,
+      .needs_coefficients = 1, .description = "exp(-optical depth)"},
+     transmittance_of},
+    {{TETCAST_CHANNEL_PATH_LENGTH, .name = "path_length", .file_name = "path_length", .needs_coefficients = 1,
+      .description = "length of the ray in cells, in the mesh's unit"},
      path_length_of},
-    {{TETCAST_CHANNEL_ERROR, "error", "bound on the error of red, green, blue and alpha", 0, 0, 0}, error_of},
-    {{TETCAST_CHANNEL_VALUE, "value", "value along the ray in a blend mode, NaN: it meets nothing", 0, 0, 1}, value_of},
+    {{TETCAST_CHANNEL_ERROR, .name = "error", .file_name = "error",
+      .description = "bound on the error of red, green, blue and alpha"},
+     error_of},
+    {{TETCAST_CHANNEL_VALUE, .name = "value", .file_name = "value", .needs_blend = 1,
+      .description = "value along the ray in a blend mode, NaN: it meets nothing"},
+     value_of},
+    {{TETCAST_CHANNEL_DEPTH, .name = "depth", .file_name = "Z", .needs_composite = 1,
+      .description = "distance at which alpha exceeds 1/2, or of the first surface that is half opaque"},
+     depth_of},
 };
 
 void tc_color_value(const TcPieces *colors, double value, double alpha, double rgba[4]) {

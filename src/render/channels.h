@@ -8,7 +8,7 @@
 #include "optics/transfer.h"
 #include "volume/coefficients.h"
 
-enum { TC_CHANNELS = 6 };
+enum { TC_CHANNELS = 7 };
 
 /* What a pixel's values are made from. */
 typedef struct TcGathered {

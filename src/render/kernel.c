@@ -270,6 +270,7 @@ static void begin_packet(const int which, const TcSurfaces *surfaces, const TcGa
   p->rays = waiting->rays;
   if (surfaces) {
     memcpy(p->along, waiting->along, sizeof p->along);
+    p->start = waiting->start;
     memcpy(p->slice, waiting->slice, (size_t)surfaces->slice_count * sizeof *p->slice);
   }
   p->lanes = waiting->lanes;
@@ -294,7 +295,7 @@ static void begin_packet(const int which, const TcSurfaces *surfaces, const TcGa
 static void finish_packet(const TcJob *job, State *state, TcWorker *worker, Packet *packet, double *sums) {
   double gathered[TC_MAX_SUMS][TC_LANES], nowhere[TC_MAX_SUMS];
   TcPacket *p = &packet->walk;
-  const TcEnding ending = {.stopped = p->stopped, .steps = p->steps, .shift = p->shift};
+  const TcEnding ending = {.stopped = p->stopped, .steps = p->steps, .shift = p->shift, .start = p->start};
   tc_gather_end(rows[job->kernel].gatherer, rows[job->kernel].features, &state->job, &packet->gather, &ending,
                 gathered);
   if (!TC_SINGLE)

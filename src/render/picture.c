@@ -77,7 +77,7 @@ static unsigned association_of(const TcRows *values) {
 static void see_through(const TcRows *values, const TcPieces *pieces, unsigned more, TcJob *job) {
   job->values = values;
   job->pieces = pieces;
-  job->sums = more & TC_BOUND ? 5 : 4;
+  job->sums = more & TC_BOUND ? 5 : job->surfaces && job->surfaces->depth ? 6 : 4;
   job->tolerance = tc_tolerance_begin(pieces, 0);
   const unsigned needed = (pieces->one_color ? 0 : TC_COLORED) | (pieces->scaled ? TC_SCALED : 0) | more;
   job->kernel = choose_row(job->sampler ? "sampled" : "emission", (job->sampler ? 0 : needed) | association_of(values),
@@ -377,7 +377,8 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
                               TetcastFrame *frame, TetcastRenderStats *stats) {
   TetcastContext *context = scene->context;
   const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
-  const bool measured = exact && !scene->blend && scene->isosurface_count == 0 &&
+  const bool depth = tc_frame_channel(frame, TETCAST_CHANNEL_DEPTH) != NULL;
+  const bool measured = exact && !scene->blend && !depth && !tc_scene_has_surfaces(scene) &&
                         (desc->tolerance > 0 || tc_frame_channel(frame, TETCAST_CHANNEL_ERROR));
   Render render = {.scene = scene, .frame = frame};
   TcJob *job = &render.job;
@@ -388,8 +389,9 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
       tc_view_create(context, camera, scene->volume, (double)frame->width / (double)frame->height, &job->view);
   if (!status && !scene->coefficients && !scene->blend)
     status = tc_scene_prepare(scene);
-  if (!status && !scene->coefficients && !scene->blend && tc_scene_has_surfaces(scene)) {
+  if (!status && !scene->coefficients && !scene->blend && (depth || tc_scene_has_surfaces(scene))) {
     status = tc_scene_surfaces(scene, &render.surfaces);
+    render.surfaces.depth = depth;
     job->surfaces = &render.surfaces;
   }
   TcSampler *sampler = NULL;
@@ -406,7 +408,7 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   tc_job_of_scene(scene, measured, job);
   const bool one_by_one = job->one_lane || scene->volume->traversal == TETCAST_TRAVERSAL_FACES;
   render.bounded = measured;
-  render.plain = job->pieces && frame->type == TETCAST_TYPE_FLOAT64 && !measured;
+  render.plain = job->pieces && !depth && frame->type == TETCAST_TYPE_FLOAT64 && !measured;
   render.kernels = tc_kernels_for(one_by_one ? TETCAST_ISA_SCALAR : desc->isa);
   status = plan(scene, desc, measured, &render); /* this may change to kernels in single precision */
   TetcastRenderStats sum = {.rays = frame->width * frame->height * desc->samples,

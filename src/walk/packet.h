@@ -70,6 +70,7 @@ typedef struct TcPacket {
   /* If there are surfaces: the rays' directions, unit vectors; the depths at which they meet slices. */
   TcWide along[3];
   TcVec slice[TETCAST_MAX_SLICES];
+  TcWide start; /* what is added to a depth to have the distance from where the ray starts */
 } TcPacket;
 
 /* Lets the lanes of `mask` rest: their steps lead from the cell after the last one to itself. */

@@ -17,6 +17,7 @@ typedef struct TcWaiting {
   /* As TcPacket has them. */
   TcWide along[3];
   TcVec slice[TETCAST_MAX_SLICES];
+  TcWide start;
   unsigned lanes;    /* the lanes that have a ray */
   unsigned doubtful; /* single precision: lanes whose rays pass an edge of the shell as near as rounding may move it */
   TcHits *hits;      /* [TC_LANES] lists */
@@ -37,6 +38,7 @@ static void tc_enqueue(TcPlaced *placed, TcQueue *queue) {
   waiting->lanes = tc_take(queue->ground, placed, &waiting->rays);
   if (queue->ground->surfaces) {
     memcpy(waiting->along, placed->lines.direction, sizeof waiting->along);
+    waiting->start = placed->near - placed->shift;
     for (int i = 0; i < queue->ground->surfaces->slice_count; ++i)
       waiting->slice[i] = tc_real_of_wide(placed->slice[i] + placed->shift);
   }

@@ -19,6 +19,7 @@ typedef struct TcSurfaces {
   TcHalfSpace slice[TETCAST_MAX_SLICES];
   double slice_opacity[TETCAST_MAX_SLICES];
   TetcastBoundary boundary; /* opacity 0: it is not seen */
+  bool depth;               /* the depth at which alpha exceeds one half is wanted */
   double largest[3];        /* of all their colours, as they are seen */
 } TcSurfaces;
 

@@ -26,6 +26,16 @@ accept render cube.vtu -o fog.png --array s --transfer fog.json $down
 accept render cube.vtu -o both.png --array s --transfer fog.json --isosurface 3:red:0.5 --isosurface 2:0,0,1 $down --save-scene both.json
 differ both.png fog.png 'surfaces in the volume'
 
+# The depth at which alpha exceeds one half is a channel that picture programs know, and that rays stop at again.
+accept render cube.vtu -o depth.exr --array s --isosurface 3:red $down --channels depth --pixel-type float
+warn 'the picture shows nothing: no surface' render cube.vtu -o behind.png --array s --isosurface 2.9:red $down --stop-depth depth.exr
+accept render cube.vtu -o stop.png --array s --isosurface 3.1:red $down --stop-depth depth.exr
+accept render cube.vtu -o free.png --array s --isosurface 3.1:red $down
+same stop.png free.png 'what lies before the depth'
+refuse 2 'error and depth' render cube.vtu -o a.exr --array s --channels error,depth
+refuse 2 'only value is possible' render cube.vtu -o a.exr --array s --blend maximum --channels depth
+refuse 2 'depth: not possible' render cube.vtu -o a.exr --emission s --channels depth
+
 # A scene makes the same picture again; the command line takes the place of its list.
 for name in red preset both; do
   accept render --scene $name.json -o again.png

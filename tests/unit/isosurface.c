@@ -38,6 +38,7 @@ static void set_fog(World *world, double low, double high, const double color[3]
 
 static TetcastFrame *shoot(World *world, const TetcastCamera *camera, int width, int height, double tolerance) {
   TetcastFrameDesc desc = tetcast_frame_desc_default();
+  desc.channels = TETCAST_CHANNEL_DEPTH;
   desc.width = width;
   desc.height = height;
   TetcastFrame *frame = NULL;
@@ -52,6 +53,10 @@ static TetcastFrame *shoot(World *world, const TetcastCamera *camera, int width,
 
 static const double *pixels_of(const TetcastFrame *frame) {
   return tetcast_frame_pixels(frame);
+}
+
+static double depth_of(const TetcastFrame *frame, int pixel) {
+  return ((const double *)tetcast_frame_channel(frame, TETCAST_CHANNEL_DEPTH))[pixel];
 }
 
 static double by_x(const double p[3]) {
@@ -125,6 +130,10 @@ static void planes_lie_where_they_should(void **state) {
           if (!(fabs(rgba[k] - wanted) <= 1e-13))
             fail_msg("camera %zu, field %d, pixel %d: %.17g, not %.17g", c, i, p, rgba[k], wanted);
         }
+        const double fog_half = log(2) / 0.5, depth = depth_of(frame, p);
+        const double half = fog_half < length ? from + fog_half : meets ? at : INFINITY;
+        if (!(depth == half || fabs(depth - half) <= 4e-14) && fabs(fog_half - length) > 1e-12)
+          fail_msg("camera %zu, field %d, pixel %d: depth %.17g, not %.17g", c, i, p, depth, half);
         assert_true(fabs(rgba[3] - (meets ? 1 : -expm1(-0.5 * length))) <= 1e-14);
         met += meets;
       }
@@ -210,6 +219,7 @@ static Real value_at(const Linear *linear, const double eye[3], const double dir
 /* What lies along a ray: a stretch of fog, or a surface if its length is 0. */
 typedef struct Event {
   Real begin, length, depth, color[3], opacity;
+  Real ends[2]; /* the extinction at both */
 } Event;
 
 static int by_begin(const void *a, const void *b) {
@@ -325,8 +335,27 @@ static int add_boundary(const Reference *r, const double eye[3], const double di
   return count;
 }
 
+/* Where alpha exceeds one half in a stretch of fog, by bisection, or at a surface; infinite: it doesn't. `left` is the
+ * transmittance before it. */
+static Real half_depth(const Event *event, Real left) {
+  if (event->length == 0)
+    return event->opacity >= 0.5L || left * (1 - event->opacity) < 0.5L ? event->begin : INFINITY;
+  Real low = 0, high = 1;
+  if (!(left * expl(-event->depth) < 0.5L))
+    return INFINITY;
+  for (int i = 0; i < 80; ++i) {
+    const Real u = (low + high) / 2,
+               depth = event->length * u * (event->ends[0] + (event->ends[1] - event->ends[0]) * u / 2);
+    if (left * expl(-depth) < 0.5L)
+      high = u;
+    else
+      low = u;
+  }
+  return event->begin + high * event->length;
+}
+
 /* The pixel; false: rounding decides what the ray meets. */
-static bool trace(const Reference *r, const double eye[3], const double direction[3], Real rgba[4]) {
+static bool trace(const Reference *r, const double eye[3], const double direction[3], Real rgba[4], Real *half) {
   Event events[4096];
   int count = 0;
   for (int64_t cell = 0; cell < r->cube->cell_count; ++cell) {
@@ -379,8 +408,11 @@ static bool trace(const Reference *r, const double eye[3], const double directio
     Real done = from;
     for (int i = 0; i <= cut_count; ++i) {
       const Real at = i < cut_count ? cuts[i].begin : to, middle = value_at(&linear, eye, direction, (done + at) / 2);
-      events[count++] =
-          (Event){.begin = done, .length = at - done, .depth = (r->low + (r->high - r->low) * middle) * (at - done)};
+      const Real a_done = value_at(&linear, eye, direction, done), a_at = value_at(&linear, eye, direction, at);
+      events[count++] = (Event){.begin = done,
+                                .length = at - done,
+                                .depth = (r->low + (r->high - r->low) * middle) * (at - done),
+                                .ends = {r->low + (r->high - r->low) * a_done, r->low + (r->high - r->low) * a_at}};
       if (i < cut_count)
         events[count++] = cuts[i];
       done = at;
@@ -392,7 +424,10 @@ static bool trace(const Reference *r, const double eye[3], const double directio
   qsort(events, (size_t)count, sizeof *events, by_begin);
   Real left = 1;
   memset(rgba, 0, 4 * sizeof *rgba);
+  *half = INFINITY;
   for (int i = 0; i < count; ++i) {
+    if (isinf(*half))
+      *half = half_depth(&events[i], left);
     const Real opacity = events[i].length > 0 ? -expm1l(-events[i].depth) : events[i].opacity;
     for (int k = 0; k < 3; ++k)
       rgba[k] += left * opacity * (events[i].length > 0 ? r->fog[k] : events[i].color[k]);
@@ -464,11 +499,14 @@ static void pictures_are_as_brute_force_has_them(void **state) {
     int compared = 0, met = 0;
     for (int p = 0; p < PIXELS; ++p) {
       double eye[3], direction[3];
-      Real wanted[4];
+      Real wanted[4], half;
       ray_of(camera, W, H, p, eye, direction);
-      if (!trace(&r, eye, direction, wanted))
+      if (!trace(&r, eye, direction, wanted, &half))
         continue;
       ++compared;
+      const double seen = depth_of(frame, p);
+      if (!(seen == half || fabsl(seen - half) <= 1e-12L))
+        fail_msg("world %d, pixel %d: depth %.17g, not %.17Lg", i, p, seen, half);
       for (int k = 0; k < 4; ++k) {
         const double got = pixels_of(frame)[4 * p + k];
         if (!(fabsl(got - wanted[k]) <= (k == 3 ? 1e-13 : tolerance)))
@@ -542,15 +580,21 @@ static void slices_and_the_boundary_as_well(void **state) {
     assert_int_equal(tetcast_scene_set_slices(world.scene, slices, r.slice_count), TETCAST_OK);
     assert_int_equal(tetcast_scene_set_boundary(world.scene, r.boundary), TETCAST_OK);
     const TetcastCamera *camera = &cameras[i % 3];
-    TetcastFrame *frame = shoot(&world, camera, W, H, 0);
+    TetcastFrame *frame = shoot(&world, camera, W, H, 0), *loose = shoot(&world, camera, W, H, 1e-3);
+    for (int p = 0; p < 4 * PIXELS; ++p)
+      assert_true(fabs(pixels_of(frame)[p] - pixels_of(loose)[p]) <= 1e-3);
+    tetcast_frame_destroy(&loose);
     int compared = 0;
     for (int p = 0; p < PIXELS; ++p) {
       double eye[3], direction[3], begin, end;
-      Real wanted[4];
+      Real wanted[4], half;
       ray_of(camera, W, H, p, eye, direction);
-      if (!chord(eye, direction, &begin, &end) || end - begin < 1e-9 || !trace(&r, eye, direction, wanted))
+      if (!chord(eye, direction, &begin, &end) || end - begin < 1e-9 || !trace(&r, eye, direction, wanted, &half))
         continue;
       ++compared;
+      const double seen = depth_of(frame, p);
+      if (!(seen == half || fabsl(seen - half) <= 1e-12L))
+        fail_msg("world %d, pixel %d: depth %.17g, not %.17Lg", i, p, seen, half);
       for (int k = 0; k < 4; ++k) {
         const double got = pixels_of(frame)[4 * p + k];
         if (!(fabsl(got - wanted[k]) <= 1e-13))
@@ -852,9 +896,13 @@ static void what_is_not_possible_is_refused(void **state) {
   refuses_to_render(&world, 0, exact, "points");
   set_values(&world, world.cube.values, TETCAST_POINT);
   refuses_to_render(&world, TETCAST_CHANNEL_ERROR, exact, "error");
+  set_surfaces(&world, list, 0);
+  refuses_to_render(&world, TETCAST_CHANNEL_DEPTH | TETCAST_CHANNEL_ERROR, exact, "depth");
+  set_surfaces(&world, list, 1);
   refuses_to_render(&world, 0, TETCAST_INTEGRATOR_MIDPOINT, "exact");
   assert_int_equal(tetcast_scene_set_blend(world.scene, TETCAST_BLEND_MAXIMUM), TETCAST_OK);
   refuses_to_render(&world, 0, exact, "composite");
+  refuses_to_render(&world, TETCAST_CHANNEL_DEPTH, exact, "depth");
   TetcastShadingDesc shading = tetcast_shading_desc_default();
   TetcastLight light = {.direction = {0, 0, 0}, .color = {1, 1, 1}};
   shading.lights = &light;

@@ -58,7 +58,7 @@ std::vector<Extra> extras_of(const TetcastFrame *frame) {
   const TetcastChannelInfo *info;
   for (int i = 0; (info = tetcast_channel_info(i)); ++i)
     if (const void *data = tetcast_frame_channel(frame, info->channel))
-      extras.push_back({info->name, data, info->of_groups ? tetcast_frame_groups(frame) : 1});
+      extras.push_back({info->file_name, data, info->of_groups ? tetcast_frame_groups(frame) : 1});
   return extras;
 }
 
