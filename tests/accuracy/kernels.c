@@ -538,7 +538,10 @@ static void threads_change_no_bit(void **state) {
     uint32_t channels = way == 4 ? TETCAST_CHANNEL_VALUE : 0;
     for (int c = 0; tetcast_channel_info(c) && way < 3; ++c) {
       const TetcastChannelInfo *info = tetcast_channel_info(c);
-      if (!info->needs_blend && (info->needs_coefficients ? kind == 3 : way > 0))
+      const bool wanted = info->needs_coefficients ? kind == 3
+                          : info->needs_composite  ? way == 0 && kind != 3
+                                                   : way > 0;
+      if (!info->needs_blend && wanted)
         channels |= info->channel;
     }
     for (int isa = TETCAST_ISA_SCALAR; isa <= TETCAST_ISA_AVX512; ++isa) {
