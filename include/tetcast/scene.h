@@ -115,13 +115,13 @@ typedef struct TetcastRenderDesc {
                      * costs allows it: with a point field and a transfer function without jumps, AVX2 or AVX-512, from
                      * 1e-3 or 1e-4 on, depending on how steep both are. The bound takes it that cells don't overlap:
                      * where a mesh folds over itself, single precision may be further off. */
+  TetcastProgress progress;
   const TetcastArray *stop; /* [height · width], float or double, rows from the top: the distance from its start at
                              * which every ray of the pixel ends, in the mesh's unit of length: from the eye, or, of an
                              * orthographic camera, from the plane through it, along the ray, not along the direction of
                              * view. So a picture is made that goes in front of opaque things of other origin. Infinity:
                              * it doesn't end; 0 or less: it sees nothing; NaN is TETCAST_ERROR_ARGUMENT. NULL
                              * (default): none ends */
-  TetcastProgress progress;
 } TetcastRenderDesc;
 
 TETCAST_API TetcastRenderDesc tetcast_render_desc_default(void);
