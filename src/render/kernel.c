@@ -137,9 +137,10 @@ TC_INLINE void advance(const int which, const unsigned on, const TcGround *given
       const TcMask complete = tc_gather_complete(which, on, job, &packet[i].gather, active[i], ++p->steps);
       const unsigned stop = tc_bits(tc_or(tc_or(lost[i], complete), ends));
       if (TC_UNLIKELY(stop | ended[i])) {
-        p->stopped |= tc_bits(complete) & ~tc_bits(ends);
+        p->stopped |= tc_bits(complete);
         p->lost |= tc_bits(lost[i]);
-        p->waiting |= ended[i] & ~stop;
+        tc_packet_leave(p, tc_bits(ends) & ~ended[i]);
+        p->waiting |= (ended[i] | tc_bits(ends)) & ~(p->stopped | p->lost);
         p->active = tc_and_not(p->active, tc_mask_of(stop | ended[i]));
         tc_packet_forget(p, tc_mask_of(stop | ended[i]));
         if (stop) {

@@ -285,6 +285,13 @@ TC_INLINE unsigned tc_packet_reach(const unsigned on, const TcGround *ground, Tc
 
 /* ── paths ── */
 
+/* The lanes of `lanes` leave their paths at the end of their rays' intervals; where cells overlap, other paths may
+ * begin before it. */
+TC_INLINE void tc_packet_leave(TcPacket *p, unsigned lanes) {
+  for (; lanes; lanes &= lanes - 1)
+    p->exit_cell[__builtin_ctz(lanes)] = UINT32_MAX; /* none: the face where the path ends is not reached */
+}
+
 /* Whether the lane has another hit at which a path begins that was not walked yet; if so, p->next is the one after. */
 static bool tc_packet_next_start(TcPacket *p, int lane) {
   const TcHits *hits = &p->hits[lane];

@@ -159,8 +159,12 @@ static bool tc_queue_trace(TcQueue *queue) {
   bool ok = true;
   for (int j = 0; j < queue->count; ++j) {
     for (int l = 0; l < TC_LANES; ++l) {
-      tc_hits_sort(&queue->waiting[j].hits[l]);
-      ok = ok && !queue->waiting[j].hits[l].out_of_memory;
+      TcHits *hits = &queue->waiting[j].hits[l];
+      tc_hits_sort(hits);
+      ok = ok && !hits->out_of_memory;
+      while (TC_UNLIKELY(hits->count > 0 &&
+                         hits->data[hits->count - 1].begin >= (double)TC_AT(queue->waiting[j].rays.end, l)))
+        --hits->count; /* nothing behind the ray's end counts */
     }
   }
   return ok;

@@ -115,13 +115,15 @@ void job_visible(const Job *job) {
 typedef struct Feature {
   const char *name;
   const Transfer *transfer;
-  int values; /* 0: the points', 1: the cells', 2: the same everywhere */
-  TetcastType type;
+  int values;       /* 0: the points', 1: the cells', 2: the same everywhere */
+  TetcastType type; /* of the frame; none: double */
   uint32_t channels;
-  int samples;
+  int samples;     /* 0: one */
   int isosurfaces; /* so many, opaque and lit, with nothing else to see; negative: half-transparent, in the volume */
   Times times;
   TetcastRenderStats stats;
+  TetcastBlend blend;
+  int planes; /* 1: clipped to `oblique` */
 } Feature;
 
 /* At equal distances over the range of the scalar. */
@@ -134,6 +136,9 @@ static void set_isosurfaces(Tet *tet, int count) {
   }
   must(tetcast_scene_set_isosurfaces(tet->scene, list, surfaces) == TETCAST_OK, "isosurfaces");
 }
+
+/* Its plane goes through the middle and cuts off what is next to the camera. */
+static const TetcastHalfSpace oblique = {{-0.3, 0.5, -0.8}, -0.3};
 
 static TetcastField *make_field(Tet *tet, const BenchMesh *mesh, int values, double *memory) {
   const bool cells = values == 1;
@@ -160,19 +165,24 @@ void job_features(const Job *job) {
       colors.color[i][k] = transfer_soft.color[i][k];
     }
   }
-  const TetcastType f32 = TETCAST_TYPE_FLOAT32, f64 = TETCAST_TYPE_FLOAT64;
   Feature features[] = {
-      {"one piece and one colour", &transfer_linear, 0, f64, 0, 1, 0, {{0}, {0}}, {0}},
-      {"colours with knots", &colors, 0, f64, 0, 1, 0, {{0}, {0}}, {0}},
-      {"extinction with knots", &knots, 0, f64, 0, 1, 0, {{0}, {0}}, {0}},
-      {"both with knots", &transfer_soft, 0, f64, 0, 1, 0, {{0}, {0}}, {0}},
-      {"field of cells", &transfer_linear, 1, f64, 0, 1, 0, {{0}, {0}}, {0}},
-      {"field the same everywhere", &transfer_linear, 2, f64, 0, 1, 0, {{0}, {0}}, {0}},
-      {"channel of error bounds", &transfer_linear, 0, f64, TETCAST_CHANNEL_ERROR, 1, 0, {{0}, {0}}, {0}},
-      {"frame of float", &transfer_linear, 0, f32, 0, 1, 0, {{0}, {0}}, {0}},
-      {"4 samples a pixel", &transfer_linear, 0, f64, 0, 4, 0, {{0}, {0}}, {0}},
-      {"3 opaque lit isosurfaces alone", &clear, 0, f64, 0, 1, 3, {{0}, {0}}, {0}},
-      {"3 lit isosurfaces in the volume", &transfer_linear, 0, f64, 0, 1, -3, {{0}, {0}}, {0}},
+      {.name = "one piece and one colour", .transfer = &transfer_linear},
+      {.name = "colours with knots", .transfer = &colors},
+      {.name = "extinction with knots", .transfer = &knots},
+      {.name = "both with knots", .transfer = &transfer_soft},
+      {.name = "field of cells", .transfer = &transfer_linear, .values = 1},
+      {.name = "field the same everywhere", .transfer = &transfer_linear, .values = 2},
+      {.name = "channel of error bounds", .transfer = &transfer_linear, .channels = TETCAST_CHANNEL_ERROR},
+      {.name = "frame of float", .transfer = &transfer_linear, .type = TETCAST_TYPE_FLOAT32},
+      {.name = "4 samples a pixel", .transfer = &transfer_linear, .samples = 4},
+      {.name = "maximum", .transfer = &transfer_linear, .blend = TETCAST_BLEND_MAXIMUM},
+      {.name = "average", .transfer = &transfer_linear, .blend = TETCAST_BLEND_AVERAGE},
+      {.name = "additive", .transfer = &transfer_linear, .blend = TETCAST_BLEND_ADDITIVE},
+      {.name = "clip by a plane through the middle", .transfer = &transfer_linear, .planes = 1},
+      {.name = "both with knots and a clip", .transfer = &transfer_soft, .planes = 1},
+      {.name = "3 opaque lit isosurfaces alone", .transfer = &clear, .isosurfaces = 3},
+      {.name = "3 lit isosurfaces in the volume", .transfer = &transfer_linear, .isosurfaces = -3},
+      {.name = "channel of depth", .transfer = &transfer_linear, .channels = TETCAST_CHANNEL_DEPTH},
   };
   const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
   Tet tet;
@@ -194,9 +204,12 @@ void job_features(const Job *job) {
       must(tetcast_scene_set_field(tet.scene, fields[feature->values]) == TETCAST_OK, "set field");
       tet_transfer(&tet, feature->transfer);
       set_isosurfaces(&tet, feature->isosurfaces);
+      must(tetcast_scene_set_blend(tet.scene, feature->blend) == TETCAST_OK, "set blend");
+      must(tetcast_scene_set_clip(tet.scene, &oblique, feature->planes) == TETCAST_OK, "set clip");
       TetcastRenderDesc desc = tetcast_render_desc_default();
-      desc.samples = feature->samples;
-      TetcastFrame *frame = tet_frame(&tet, job->options->pixels, feature->type, feature->channels);
+      desc.samples = feature->samples > 0 ? feature->samples : 1;
+      const TetcastType type = feature->type ? feature->type : TETCAST_TYPE_FLOAT64;
+      TetcastFrame *frame = tet_frame(&tet, job->options->pixels, type, feature->channels);
       tet_render(&tet, &camera, NULL, frame, NULL);
       times_add(&feature->times, measure_frame(job, &tet, &camera, &desc, frame, &feature->stats));
       tetcast_frame_destroy(&frame);

@@ -9,7 +9,7 @@
 set -u -o pipefail
 tetcast=$1 reference=$2 mesh=$3 array=${4-}
 shift $(($# < 4 ? $# : 4))
-views=(default oblique ortho inside)
+views=(default oblique ortho inside cut)
 transfers=(preset peaks steps opacity)
 cases=("$@")
 if [ -n "${TETCAST_TEST_LONG-}" ]; then
@@ -99,6 +99,11 @@ options_of() { # CASE
     aligned) # sixteenths of the cube, faces, edges and vertices of its cells among them
       echo "--eye $(center 0 0 3) --target $(center 0 0 0) --up 0,1,0"
       echo "--ortho $(number "15/16*($y1-($y0))") --size 15x15"
+      ;;
+    cut) # by an oblique plane and to a box, of which one side lies across the middle
+      echo "--eye $(center "0.9*$size" "0.7*$size" "1.1*$size") --target $(center "0.05*$size" 0 0) --up 0.1,0.9,-0.2 --fovy 41.5"
+      echo "--clip -0.4,0.7,-0.5,$(number "-0.4*($x0+$x1)/2+0.7*($y0+$y1)/2-0.5*($z0+$z1)/2-0.05*$size")"
+      echo "--clip-box $(vector "($x0+$x1)/2" "$x1+$size" "$y0-$size"),$(vector "$y0+0.9*($y1-($y0))" "$z0-1e9*$size" "$z1+$size")"
       ;;
     inside)
       echo "--eye $px,$py,$pz --target $(vector "$px+0.3*$size" "$py-0.2*$size" "$pz+0.1*$size")"

@@ -173,6 +173,15 @@ Scene read_scene(const std::string &path) {
       throw Error(path + ": samples: only squares are known here");
   }
   scene.clip = knots<4>(json_object_get(json.get(), "clip"), "clip");
+  if (const json_t *json_box = json_object_get(json.get(), "clip_box")) {
+    const auto box = tuple<6>(json_box, "clip_box");
+    for (size_t i = 0; i < 6; i++) {
+      const double sign = i % 2 ? -1 : 1;
+      std::array<double, 4> half_space{0, 0, 0, sign * box[i]};
+      half_space[i / 2] = sign;
+      scene.clip.push_back(half_space);
+    }
+  }
   scene.mesh = read_mesh((folder / input).string(), array);
   return scene;
 }

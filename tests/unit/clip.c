@@ -299,6 +299,60 @@ static void sides_of_coefficients(void **state) {
   }
 }
 
+/* Where two bodies overlap, each is seen up to where rays end, whichever they meet first; of what all cells count for,
+ * every cell for itself is right. */
+static void bodies_that_overlap(void **state) {
+  (void)state;
+  static const uint32_t channels = TETCAST_CHANNEL_OPTICAL_DEPTH | TETCAST_CHANNEL_PATH_LENGTH;
+  double *sums[2][2] = {{NULL}};
+  const TetcastHalfSpace planes[2] = {{{0.2, 0.1, -1}, -0.6}, {{-0.1, 0.3, 1}, 0.2}};
+  const TetcastCamera cameras[2] = {camera_of(2.1, 1.7, 3.3, 0.6, 0.6, 0.6), parallel(1.3, 0.9, 3, 2)};
+  for (int t = 0; t < 2; ++t) {
+    World world;
+    world_begin(&world, 0.6, 1, t ? TETCAST_TRAVERSAL_FACES : TETCAST_TRAVERSAL_SHELL, TETCAST_POINT);
+    tetcast_scene_destroy(&world.scene);
+    tetcast_volume_destroy(&world.volume);
+    /* The cube, and another beside it that has a part in common with it. */
+    const Cube *one = &world.cube;
+    Cube two = {2 * one->vertex_count, 2 * one->cell_count, malloc(6 * (size_t)one->vertex_count * sizeof(double)),
+                malloc(8 * (size_t)one->cell_count * sizeof(int64_t)),
+                malloc(2 * (size_t)one->vertex_count * sizeof(double))};
+    for (int64_t i = 0; i < two.vertex_count; ++i) {
+      const int64_t from = i % one->vertex_count;
+      for (int k = 0; k < 3; ++k)
+        two.vertices[3 * i + k] = one->vertices[3 * from + k] + (i == from ? 0 : k < 2 ? 0.3 : -0.6);
+      two.values[i] = one->values[from];
+    }
+    for (int64_t i = 0; i < 4 * two.cell_count; ++i)
+      two.cells[i] = one->cells[i % (4 * one->cell_count)] + (i / (4 * one->cell_count)) * one->vertex_count;
+    cube_destroy(&world.cube);
+    world.cube = two;
+    TetcastMesh *mesh = cube_mesh(world.fixture.context, &world.cube);
+    world.volume = volume_of(world.fixture.context, mesh, t ? TETCAST_TRAVERSAL_FACES : TETCAST_TRAVERSAL_SHELL);
+    tetcast_mesh_destroy(&mesh);
+    assert_int_equal(tetcast_scene_create(world.fixture.context, world.volume, &world.scene), TETCAST_OK);
+    set_coefficients(&world, 1);
+    clip(&world, planes, 2);
+    for (int c = 0; c < 2; ++c) {
+      TetcastFrame *frame = shoot(&world, &cameras[c], channels, NULL, 1, NULL);
+      sums[t][c] = malloc(2 * PIXELS * sizeof(double));
+      memcpy(sums[t][c], tetcast_frame_channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH), PIXELS * sizeof(double));
+      memcpy(sums[t][c] + PIXELS, tetcast_frame_channel(frame, TETCAST_CHANNEL_PATH_LENGTH), PIXELS * sizeof(double));
+      tetcast_frame_destroy(&frame);
+    }
+    world_end(&world);
+  }
+  for (int c = 0; c < 2; ++c) {
+    double most = 0;
+    for (int j = PIXELS; j < 2 * PIXELS; ++j)
+      most = fmax(most, sums[1][c][j]);
+    assert_true(most > 0.4); /* both count */
+    assert_true(largest_difference(sums[0][c], sums[1][c], 2 * PIXELS) <= 1e-13);
+    free(sums[0][c]);
+    free(sums[1][c]);
+  }
+}
+
 /* Planes beside the mesh, also very far and very near ones, change no bit of picture or bound; planes beyond it leave
  * nothing, for nothing. */
 static void planes_beside_the_mesh(void **state) {
@@ -608,10 +662,11 @@ static void what_is_not_possible_is_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(both_sides_are_the_whole), cmocka_unit_test(sides_of_sums_and_extremes),
-      cmocka_unit_test(sides_of_coefficients),    cmocka_unit_test(planes_beside_the_mesh),
-      cmocka_unit_test(nothing_left_is_clear),    cmocka_unit_test(a_ray_in_a_plane_is_kept),
-      cmocka_unit_test(units_change_no_bit),      cmocka_unit_test(rays_stop_where_they_are_told),
-      cmocka_unit_test(tolerances_are_kept),      cmocka_unit_test(what_is_not_possible_is_refused)};
+      cmocka_unit_test(both_sides_are_the_whole),       cmocka_unit_test(sides_of_sums_and_extremes),
+      cmocka_unit_test(sides_of_coefficients),          cmocka_unit_test(bodies_that_overlap),
+      cmocka_unit_test(planes_beside_the_mesh),         cmocka_unit_test(nothing_left_is_clear),
+      cmocka_unit_test(a_ray_in_a_plane_is_kept),       cmocka_unit_test(units_change_no_bit),
+      cmocka_unit_test(rays_stop_where_they_are_told),  cmocka_unit_test(tolerances_are_kept),
+      cmocka_unit_test(what_is_not_possible_is_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

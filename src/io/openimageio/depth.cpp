@@ -3,9 +3,11 @@
 #include <tetcast/image.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <OpenImageIO/imageio.h>
@@ -50,6 +52,9 @@ bool is_float(const TypeDesc &type) {
 }
 
 TetcastStatus read_depth(TetcastContext *context, const char *path, int64_t width, int64_t height, double *depth) {
+  std::error_code error; // what isn't there is said by OpenImageIO
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    return refuse(context, TETCAST_ERROR_IO, path, "it is not a regular file");
   const std::unique_ptr<ImageInput> input = ImageInput::open(path);
   if (!input) {
     const std::string reason = OIIO::geterror();
