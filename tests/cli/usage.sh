@@ -103,7 +103,7 @@ for integrator in exact:2 midpoint midpoint: midpoint:0 midpoint:1.5 gauss:17 ta
   refuse 2 'gauss:N' render a.vtu --integrator "$integrator"
 done
 for tolerance in -1 x inf 1,2 ''; do refuse 2 '0 or above' render a.vtu --tolerance "$tolerance"; done
-for channels in depth '' error,error error,depth ,error; do
+for channels in dept '' error,error error,dept ,error; do
   refuse 2 'expected error' render a.vtu -o a.exr --channels "$channels"
 done
 refuse 2 'not the default, a .png' render a.vtu --channels error
