@@ -522,10 +522,10 @@ static void threads_change_no_bit(void **state) {
   Cube cube = cube_create(5, 0.6);
   const TetcastCamera cameras[] = {camera_of(2.1, 1.7, 3.3, 0.5, 0.5, 0.5), camera_of(0.43, 0.52, 0.61, 1, 0.2, 0)};
   int singles = 0;
-  for (int i = 0; i < 2 * 4 * 5; i += test_short() ? 3 : 1) {
+  for (int i = 0; i < 2 * 4 * 5; ++i) {
     const int kind = i % 4, way = i / 4 % 5,
               traversal = i / 20; /* way: exact, exact with bounds and samples, tolerance, sampled, blend mode */
-    if (kind == 3 && way >= 3)
+    if ((kind == 3 && way >= 3) || (test_short() && (kind + way) % 3 != 2))
       continue;
     TetcastVolume *volume = random_volume(context, &cube, traversal ? 7 : 0);
     TetcastScene *scene = scene_for_threads(context, &cube, volume, kind);
