@@ -26,7 +26,7 @@
 /* Order of the library's enumerations. */
 static const char *const opacity_models[] = {"unit-distance", "vtk-unstructured", "ospray", NULL};
 static const char *const blends[] = {"composite", "maximum", "minimum", "average", "additive", NULL};
-static const char *const shades[] = {"none", "surfaces", NULL};
+static const char *const shades[] = {"none", "surfaces", "volume", "all", NULL};
 static const char *const normals[] = {"smooth", "flat", NULL};
 static const char *const isas[] = {"auto", "scalar", "avx2", "avx512", NULL};
 static const char *const traversals[] = {"shell", "faces", NULL};
@@ -71,13 +71,17 @@ const RenderRow render_table[OPTION_COUNT] = {
                       .form = "expected nx,ny,nz,d[:OPACITY]: four numbers, nx,ny,nz not 0,0,0, and one from 0 to 1"},
     [OPTION_SURFACE] = {"surface", KIND_OPTIONAL, AT(surface), .excludes = DIRECT,
                         .form = "expected [COLOUR][:OPACITY], a name, #rrggbb or r,g,b, and a number from 0 to 1"},
-    [OPTION_SHADE] = {"shade", KIND_CHOICE, AT(shade), .names = shades, .form = "expected none or surfaces"},
+    [OPTION_SHADE] = {"shade", KIND_CHOICE, AT(shade), .names = shades,
+                      .form = "expected none, surfaces, volume or all"},
     [OPTION_NORMALS] = {"normals", KIND_CHOICE, AT(normals), .names = normals, .form = "expected smooth or flat"},
     [OPTION_MATERIAL] = {"material", KIND_NUMBERS, AT(material), 4, 4, 0, 10000,
                          .form = "expected ambient,diffuse,specular,exponent: four numbers from 0, the last from 1 to "
                                  "10000"},
     [OPTION_LIGHT] = {"light", KIND_LIST, AT(lights), .most = TETCAST_MAX_LIGHTS,
                       .form = "expected x,y,z[:COLOUR]: where it comes from, not 0,0,0, and a name, #rrggbb or r,g,b"},
+    [OPTION_SHADOWS] = {"shadows", KIND_FLAG, AT(shadows), .form = "expected true or false"},
+    [OPTION_AMBIENT_OCCLUSION] = {"ambient-occlusion", KIND_INTEGERS, AT(ambient_occlusion), 1, 1, 0, 4096,
+                                  .form = "expected a whole number of directions from 1 to 4096, or 0: without"},
     [OPTION_CLIP] = {"clip", KIND_NUMBERS, AT(clip), 4, 4, -DBL_MAX, DBL_MAX,
                      .form = "expected four numbers nx,ny,nz,d, of which nx,ny,nz are not all zero"},
     [OPTION_CLIP_BOX] = {"clip-box", KIND_NUMBERS, AT(clip_box), 6, 6, -DBL_MAX, DBL_MAX,

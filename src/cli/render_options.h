@@ -38,6 +38,8 @@ typedef enum OptionId {
   OPTION_NORMALS,
   OPTION_MATERIAL,
   OPTION_LIGHT,
+  OPTION_SHADOWS,
+  OPTION_AMBIENT_OCCLUSION,
   OPTION_CLIP,
   OPTION_CLIP_BOX,
   OPTION_STOP_DEPTH,
@@ -95,9 +97,9 @@ typedef struct RenderOptions {
   TextList isosurfaces, slices, lights;
   double merge_tolerance; /* negative unless given */
   RangeKind range_kind;   /* RANGE_FIXED: options->range */
-  double subdivide;
+  double subdivide, ambient_occlusion;
   int opacity_model, blend, shade, normals, traversal, isa, pixel_type; /* values of the library's enumerations */
-  int cell_to_point, no_displacement, quiet, strict, resume, refine, no_plots, groups;
+  int cell_to_point, no_displacement, quiet, strict, resume, refine, no_plots, groups, shadows;
   uint64_t given;  /* bit 1 << OptionId: has a value from command line or scene file */
   uint64_t source; /* the same for the source being read alone */
 } RenderOptions;
@@ -161,6 +163,11 @@ static inline TetcastBlend render_options_blend(const RenderOptions *options) {
 static inline bool render_options_surfaces(const RenderOptions *options) {
   return render_options_given(options, OPTION_ISOSURFACE) || render_options_given(options, OPTION_SLICE) ||
          render_options_given(options, OPTION_SURFACE);
+}
+
+/* Whether light falls on the volume. */
+static inline bool render_options_lit(const RenderOptions *options) {
+  return render_options_given(options, OPTION_SHADE) && options->shade & TETCAST_SHADE_VOLUME;
 }
 
 /* Whether surfaces are all there is to see: no transfer function was given beside them. */

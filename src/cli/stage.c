@@ -9,7 +9,6 @@
 #include "clip.h"
 #include "progress.h"
 #include "surfaces.h"
-#include "transfer_file.h"
 #include "view.h"
 
 int stage_begin(Stage *stage, const RenderOptions *options) {
@@ -17,7 +16,7 @@ int stage_begin(Stage *stage, const RenderOptions *options) {
   if (!stage->context)
     return CLI_FAILED;
   if (render_options_given(options, OPTION_TRANSFER)) {
-    stage->transfer_function = transfer_file_load(stage->context, options);
+    stage->transfer_function = transfer_file_load(stage->context, options, &stage->rows);
     if (!stage->transfer_function)
       return CLI_FAILED;
   } else if (render_options_given(options, OPTION_OPACITY_MODEL)) {
@@ -103,7 +102,7 @@ static int read_field(Stage *stage, const RenderOptions *options, const int64_t 
   desc.subdivision = (int)options->subdivide;
   desc.cell_to_point = options->cell_to_point;
   desc.no_displacement = options->no_displacement;
-  desc.only = only_array(stage, options);
+  desc.only = stage->rows.second ? NULL : only_array(stage, options);
   const char *path = options->input;
   int64_t file = 0;
   if (options->inputs) {
@@ -139,6 +138,14 @@ static int read_field(Stage *stage, const RenderOptions *options, const int64_t 
       stage->array = cli_duplicate(array);
       if (!options->array)
         tell_choice(stage);
+    }
+  }
+  if (status == TETCAST_OK && stage->rows.second) {
+    status = vtk->dataset_field(stage->dataset, stage->rows.second, &stage->second, &array);
+    if (status == TETCAST_OK && tetcast_field_association(stage->second) != TETCAST_CELL) {
+      cli_error("%s: second: '%s' is an array of points; expected one of cells, or \"gradient\"",
+                options->transfer ? options->transfer : options->scene, stage->rows.second);
+      return CLI_FAILED;
     }
   }
   stage->read_seconds = cli_seconds() - start;
@@ -246,7 +253,7 @@ static TetcastStatus set_transfer_function(Stage *stage, const RenderOptions *op
                       : tetcast_scene_create_preset(stage->scene, render_options_preset(options), range[0], range[1],
                                                     &stage->transfer_function);
   }
-  if (status == TETCAST_OK)
+  if (status == TETCAST_OK && stage->rows.count == 0) /* rows the scene has by now */
     status = render_options_surfaces_alone(options)
                  ? surfaces_set_colors(stage->context, stage->scene, stage->transfer_function)
                  : tetcast_scene_set_transfer_function(stage->scene, stage->transfer_function);
@@ -262,6 +269,19 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
               stage->array ? stage->array : "of the mesh");
     return CLI_FAILED;
   }
+  if (stage->rows.count > 0 && tetcast_field_association(stage->field) == TETCAST_CELL) {
+    cli_error(
+        "--transfer: one with rows needs an array of points, and %s has a value for each cell; --cell-to-point makes "
+        "one for points of it",
+        stage->array ? stage->array : "the mesh's");
+    return CLI_FAILED;
+  }
+  if (render_options_lit(options) && tetcast_field_association(stage->field) == TETCAST_CELL) {
+    cli_error("--shade volume: the array %s has a value for each cell, so no gradient; --cell-to-point makes one for "
+              "points of it",
+              stage->array ? stage->array : "of the mesh");
+    return CLI_FAILED;
+  }
   cli_interrupt_hold(true);
   TetcastStatus status = create_volume(stage, options);
   if (status == TETCAST_OK && !stage->scene)
@@ -271,6 +291,8 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
   if (status == TETCAST_OK)
     status = stage->field ? tetcast_scene_set_field(stage->scene, stage->field)
                           : coefficients_set(stage->scene, options, &stage->coefficients);
+  if (status == TETCAST_OK && stage->rows.count > 0)
+    status = tetcast_scene_set_transfer_rows(stage->scene, stage->rows.row, stage->rows.count, stage->second);
   if (status == TETCAST_OK)
     status = tetcast_scene_set_blend(stage->scene, render_options_blend(options));
   if (status == TETCAST_OK)
@@ -300,6 +322,7 @@ int stage_shade(Stage *stage, const RenderOptions *options, const double range[2
 
 void stage_drop_dataset(Stage *stage) {
   tetcast_field_destroy(&stage->field);
+  tetcast_field_destroy(&stage->second);
   coefficients_release(&stage->coefficients);
   tetcast_mesh_destroy(&stage->mesh);
   if (stage->dataset)
@@ -308,6 +331,7 @@ void stage_drop_dataset(Stage *stage) {
 
 void stage_release(Stage *stage) {
   tetcast_scene_destroy(&stage->scene);
+  transfer_file_release(&stage->rows);
   tetcast_transfer_function_destroy(&stage->transfer_function);
   tetcast_volume_destroy(&stage->volume);
   stage_drop_dataset(stage);

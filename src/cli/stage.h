@@ -9,6 +9,7 @@
 #include "coefficients.h"
 #include "matter.h"
 #include "render_options.h"
+#include "transfer_file.h"
 
 typedef struct Stage {
   TetcastContext *context;
@@ -19,6 +20,8 @@ typedef struct Stage {
   TetcastVolume *volume;
   TetcastVolumeInfo info;
   TetcastTransferFunction *transfer_function;
+  TransferRows rows;    /* of a transfer function of two dimensions */
+  TetcastField *second; /* its second quantity, until stage_drop_dataset(); NULL: it needs none */
   TetcastScene *scene;
   TetcastCamera camera;
   double shown[2];   /* the range of the colour map, where that was made for one */
