@@ -38,6 +38,8 @@ static const char *find_darkness(const RenderOptions *options) {
     return "--shade volume, --shadows, --ambient-occlusion: need a volume: a --transfer beside the surfaces";
   if (!render_options_lit(options))
     return NULL;
+  if (options->command == COMMAND_CONVERGE)
+    return "--shade volume: render only, as the integrators that are compared know no light";
   if (render_options_direct(options))
     return "--shade volume: not possible with --extinction or --emission, which are all the light there is";
   if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE)

@@ -19,6 +19,10 @@ int stage_begin(Stage *stage, const RenderOptions *options) {
     stage->transfer_function = transfer_file_load(stage->context, options, &stage->rows);
     if (!stage->transfer_function)
       return CLI_FAILED;
+    if (stage->rows.count > 0 && options->command == COMMAND_CONVERGE) {
+      cli_error("--transfer: one with rows is for render only, as the integrators that are compared know none");
+      return CLI_FAILED;
+    }
   } else if (render_options_given(options, OPTION_OPACITY_MODEL)) {
     cli_warning("a preset states extinction: --opacity-model has no effect");
   }

@@ -29,9 +29,9 @@ TetcastStatus tc_scene_gradients(const TetcastScene *scene, const TcGradients **
 
 /* ── what arrives ── */
 
-/* From where the light that arrives at a vertex is cast. A ray from the very vertex may lie in the mesh's boundary, where
- * it would be chance whether the mesh is in its way. So it starts a little inside of the largest cell at the vertex:
- * 2^−16 of the way to the cell's middle, which changes what arrives by no more than single precision does. */
+/* From where the light that arrives at a vertex is cast. A ray from the very vertex may lie in the mesh's boundary,
+ * where it would be chance whether the mesh is in its way. So it starts a little inside of the largest cell at the
+ * vertex: 2^−16 of the way to the cell's middle, which changes what arrives by no more than single precision does. */
 typedef struct Inside {
   float shift[3], size;
 } Inside;
@@ -74,7 +74,7 @@ typedef struct Open {
   const TcIsaKernels *kernels;
   TcJob job;
   Casting *casting; /* [threads] */
-  Inside *inside; /* [vertices] */
+  Inside *inside;   /* [vertices] */
   float *open;      /* [vertices][width] */
   int width;
 } Open;
