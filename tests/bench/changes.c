@@ -215,13 +215,13 @@ void job_features(const Job *job) {
       {.name = "3 lit isosurfaces in the volume", .transfer = &transfer_linear, .isosurfaces = -3},
       {.name = "one piece and two colours", .transfer = &transfer_blend},
       {.name = "light in the volume", .transfer = &transfer_blend, .shade = TETCAST_SHADE_ALL},
-      {.name = "light in the volume, both with knots", .transfer = &transfer_soft, .shade = TETCAST_SHADE_ALL},
-      {.name = "light in the volume, with shadows",
+      {.name = "light in the volume and knots", .transfer = &transfer_soft, .shade = TETCAST_SHADE_ALL},
+      {.name = "light in the volume with shadows",
        .transfer = &transfer_blend,
        .shade = TETCAST_SHADE_ALL,
        .shadows = true},
-      {.name = "two dimensions, 4 rows", .transfer = &transfer_blend, .rows = 4},
-      {.name = "two dimensions, 4 rows with knots", .transfer = &transfer_soft, .rows = 4},
+      {.name = "two dimensions of 4 rows", .transfer = &transfer_blend, .rows = 4},
+      {.name = "two dimensions of 4 rows with knots", .transfer = &transfer_soft, .rows = 4},
       {.name = "channel of depth", .transfer = &transfer_linear, .channels = TETCAST_CHANNEL_DEPTH},
   };
   const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
