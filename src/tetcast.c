@@ -1,40 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The public boundary: checks arguments, guards the host's floating-point environment, and hands what takes long to a
  * thread of the library's own (call.h); nothing else. What computes nothing, and calls nothing, needs no guard. */
-#include <tetcast/tetcast.h>
-
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
-#include "base/base.h"
-#include "base/call.h"
+#include "boundary.h"
 #include "mesh/cut.h"
 #include "mesh/mesh.h"
 #include "optics/transfer.h"
 #include "render/render.h"
-
-#define ARGUMENT(context, ...) tc_error(context, TETCAST_ERROR_ARGUMENT, __VA_ARGS__)
-
-/* The checks that every function which makes something begins with. */
-#define CHECK_OUT(context, out)                                                                                        \
-  do {                                                                                                                 \
-    if (!(out))                                                                                                        \
-      return ARGUMENT(context, "%s: no place for the result", __func__);                                               \
-    *(out) = NULL;                                                                                                     \
-  } while (0)
-#define CHECK_GIVEN(context, pointer)                                                                                  \
-  do {                                                                                                                 \
-    if (!(pointer))                                                                                                    \
-      return ARGUMENT(context, "%s: " #pointer " is NULL", __func__);                                                  \
-  } while (0)
-#define CHECK_DESC(context, desc)                                                                                      \
-  do {                                                                                                                 \
-    CHECK_GIVEN(context, desc);                                                                                        \
-    if ((desc)->cookie != TC_COOKIE) {                                                                                 \
-      return ARGUMENT(context, "%s: the description was not made with its ..._default() function", __func__);          \
-    }                                                                                                                  \
-  } while (0)
 
 /* ── version, status ── */
 

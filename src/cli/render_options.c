@@ -51,9 +51,9 @@ const RenderRow render_table[OPTION_COUNT] = {
                          .form = "expected a transfer function or the path of one"},
     [OPTION_PRESET] = {"preset", KIND_TEXT, AT(preset), .excludes = BIT(OPTION_TRANSFER) | DIRECT,
                        .form = "expected a name"},
-    [OPTION_RANGE] = {"range", KIND_NUMBERS, AT(range), 2, 2, -DBL_MAX, DBL_MAX,
-                      .excludes = BIT(OPTION_TRANSFER) | DIRECT,
-                      .form = "expected two numbers, LO not above HI, or step, or series"},
+    [OPTION_RANGE] =
+        {"range", KIND_NUMBERS, AT(range), 2, 2, -DBL_MAX, DBL_MAX, .excludes = BIT(OPTION_TRANSFER) | DIRECT,
+         .form = "expected two numbers, LO not above HI, or shares of the volume as 1%,99%, or step, or series"},
     [OPTION_OPACITY_MODEL] = {"opacity-model", KIND_CHOICE, AT(opacity_model), .names = opacity_models,
                               .excludes = DIRECT, .form = "expected unit-distance, vtk-unstructured or ospray"},
     [OPTION_EXTINCTION] = {"extinction", KIND_TEXT, AT(extinction), .excludes = TRANSFER, .only = COMMAND_RENDER,
@@ -402,7 +402,32 @@ static const char *add_to_list(OptionId id, TextList *list, const OptionValue *v
   return NULL;
 }
 
+/* "1%,99%" as shares. */
+static bool parse_shares(const char *text, double shares[2]) {
+  char *numbers = cli_duplicate(text);
+  int signs = 0, kept = 0;
+  for (int i = 0; text[i]; i++) {
+    const bool sign = text[i] == '%' && (text[i + 1] == ',' || !text[i + 1]);
+    signs += sign;
+    if (!sign)
+      numbers[kept++] = text[i];
+  }
+  numbers[kept] = 0;
+  const bool fine = signs == 2 && cli_parse_numbers(numbers, ',', 2, shares) == 2 && shares[0] >= 0 &&
+                    shares[0] < shares[1] && shares[1] <= 100;
+  free(numbers);
+  shares[0] /= 100;
+  shares[1] /= 100;
+  return fine;
+}
+
 static const char *set_range(RenderOptions *options, const OptionValue *value) {
+  double shares[2];
+  if (value->text && parse_shares(value->text, shares)) {
+    memcpy(options->range, shares, sizeof shares);
+    options->range_kind = RANGE_QUANTILES;
+    return NULL;
+  }
   const bool step = value->text && !strcmp(value->text, "step"), series = value->text && !strcmp(value->text, "series");
   const char *reason = step || series ? NULL : set_numbers(OPTION_RANGE, options->range, value);
   if (!reason)

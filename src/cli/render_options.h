@@ -73,7 +73,7 @@ typedef enum OptionId {
 typedef enum RenderCommand { COMMAND_RENDER = 1, COMMAND_CONVERGE = 2 } RenderCommand;
 
 /* The kinds of range that --range can name. */
-typedef enum RangeKind { RANGE_DEFAULT, RANGE_FIXED, RANGE_STEP, RANGE_SERIES } RangeKind;
+typedef enum RangeKind { RANGE_DEFAULT, RANGE_FIXED, RANGE_QUANTILES, RANGE_STEP, RANGE_SERIES } RangeKind;
 
 /* What an option has that may be given several times. */
 typedef struct TextList {
@@ -96,7 +96,7 @@ typedef struct RenderOptions {
   double material[4];
   TextList isosurfaces, slices, lights;
   double merge_tolerance; /* negative unless given */
-  RangeKind range_kind;   /* RANGE_FIXED: options->range */
+  RangeKind range_kind;   /* RANGE_FIXED: options->range; RANGE_QUANTILES: these shares of the volume */
   double subdivide, ambient_occlusion;
   int opacity_model, blend, shade, normals, traversal, isa, pixel_type; /* values of the library's enumerations */
   int cell_to_point, no_displacement, quiet, strict, resume, refine, no_plots, groups, shadows;

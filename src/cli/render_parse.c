@@ -68,6 +68,8 @@ static const char *find_mixture(const RenderOptions *options) {
   const char *light = find_darkness(options);
   if (light)
     return light;
+  if (render_options_range(options) == RANGE_QUANTILES && render_options_blend(options) == TETCAST_BLEND_ADDITIVE)
+    return "--range of shares: --blend additive has integrals along rays, which are in no range of values";
   if (!render_options_direct(options)) {
     if (render_options_groups(options))
       return "--groups: needs --extinction or --emission";

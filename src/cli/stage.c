@@ -250,6 +250,8 @@ static TetcastStatus set_transfer_function(Stage *stage, const RenderOptions *op
   if (!stage->transfer_function) {
     if (render_options_range(options) == RANGE_FIXED)
       range = options->range;
+    else if (render_options_range(options) == RANGE_QUANTILES)
+      range = stage->quantiles;
     memcpy(stage->shown, range, sizeof stage->shown);
     const bool labelled = stage->uniform && stage->array;
     status = labelled ? matter_shade(stage->context, stage->scene, &stage->matter, options->preset, range,
@@ -301,6 +303,9 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
     status = tetcast_scene_set_blend(stage->scene, render_options_blend(options));
   if (status == TETCAST_OK)
     status = clip_scene(stage->scene, options);
+  if (status == TETCAST_OK && stage->field && render_options_range(options) == RANGE_QUANTILES)
+    status =
+        tetcast_statistics_quantiles(stage->context, stage->mesh, stage->field, options->range, 2, stage->quantiles);
   if (status != TETCAST_OK)
     return cli_failed(status);
   tetcast_volume_info(stage->volume, &stage->info);

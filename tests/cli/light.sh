@@ -45,6 +45,17 @@ refuse 1 'so no gradient; --cell-to-point' render cube.vtu --array 'c d' --shade
 refuse 2 'shade volume: render only' converge cube.vtu --array s --shade volume -o report
 accept render cube.vtu -o cells.png --array 'c d' --cell-to-point --shade volume $view
 
+# Shares of the volume as the range: of s = x + 2 y + 3 z, whose values near the corner of 0 have a volume of v^3 / 36.
+accept render cube.vtu -o shares.png --array s --range 1%,99% $view --save-scene shares.json
+accept render cube.vtu -o range.png --array s --range 0.7113786608980126,5.288621339101988 $view
+same shares.png range.png 'a range of shares'
+accept render --scene shares.json -o again.png
+same again.png shares.png 'scene of shares'
+for text in 1%,99 99%,1% 1%,101% -1%,50% 50% %,%; do
+  refuse 2 'shares of the volume' render cube.vtu --array s --range=$text
+done
+refuse 2 'in no range of values' render cube.vtu --array s --range 1%,99% --blend additive
+
 # Rows: one alone is a transfer function of one dimension; |grad s| = sqrt(14) = 3.7 lies between rows; a cell array.
 row() { printf '{"at": %s, "color": [[0,0,1,0],[6,1,0,0]], "extinction": [[0,%s],[6,%s]]}' "$1" "$2" "$3"; }
 echo "{\"second\": \"gradient\", \"rows\": [$(row 2 0.5 2)]}" >one.json
