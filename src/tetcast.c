@@ -812,7 +812,7 @@ int tetcast_scene_groups(const TetcastScene *scene) {
 }
 
 TetcastRenderDesc tetcast_render_desc_default(void) {
-  return (TetcastRenderDesc){.cookie = TC_COOKIE, .integrator_n = 1, .samples = 1};
+  return (TetcastRenderDesc){.cookie = TC_COOKIE, .integrator_n = 1, .samples = 1, .adaptive_fine = 1};
 }
 
 static TetcastStatus check_camera(TetcastContext *context, const TetcastCamera *camera) {
@@ -911,6 +911,30 @@ static TetcastStatus check_stop(TetcastContext *context, const TetcastArray *sto
   return TETCAST_OK;
 }
 
+/* Whether the picture can be one of few rays, if it is to be. */
+static TetcastStatus check_adaptive(const TetcastScene *scene, const TetcastRenderDesc *desc,
+                                    const TetcastFrame *frame) {
+  TetcastContext *context = scene->context;
+  const int coarse = desc->adaptive_coarse;
+  if (coarse == 0)
+    return TETCAST_OK;
+  if (coarse < 0 || coarse > 64 || (coarse & (coarse - 1)))
+    return ARGUMENT(context, "adaptive: a ray at every %d pixels, must be a power of two up to 64", coarse);
+  if (!(desc->adaptive_epsilon >= 0) || !isfinite(desc->adaptive_epsilon))
+    return ARGUMENT(context, "adaptive: an epsilon of %g, must be 0 or a positive number", desc->adaptive_epsilon);
+  if (desc->adaptive_fine < 1 || desc->adaptive_fine > 65536)
+    return ARGUMENT(context, "adaptive: %d samples in fine pixels, must be in [1, 65536]", desc->adaptive_fine);
+  if (desc->samples != 1)
+    return ARGUMENT(context, "adaptive: not possible with %d samples", desc->samples);
+  if (scene->blend)
+    return ARGUMENT(context, "adaptive: only possible in the blend mode composite");
+  for (int i = 0; i < TC_CHANNELS; ++i) {
+    if (frame->channel[i])
+      return ARGUMENT(context, "adaptive: the channel %s can't be interpolated", tc_channels[i].info.name);
+  }
+  return TETCAST_OK;
+}
+
 typedef struct SceneRender {
   const TetcastScene *scene;
   const TetcastCamera *camera;
@@ -951,6 +975,8 @@ TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamer
     return ARGUMENT(context, "a tolerance of %g: must be 0 or a positive number", desc->tolerance);
   }
   TetcastStatus status = check_scene(scene, desc, frame);
+  if (!status)
+    status = check_adaptive(scene, desc, frame);
   if (!status)
     status = check_camera(context, camera);
   if (!status && desc->stop)

@@ -170,6 +170,20 @@ typedef struct TetcastRenderDesc {
    * it, along the ray, not along the direction of view. So a picture is made that goes in front of opaque things of
    * other origin. Infinity: the ray doesn't end; 0 or less: it sees nothing; NaN is TETCAST_ERROR_ARGUMENT. */
   const TetcastArray *stop;
+  /* Above 0, a power of two up to 64: rays are cast where the picture has something to show, not through every pixel
+   * (Levoy 1990). First there is one at every so many pixels, in both directions; a square between four of them is cut
+   * into four, and so on down to single pixels, unless all four channels of its corners differ by less than
+   * adaptive_epsilon; the pixels between corners are interpolated. A pixel that a ray was cast through is as exact as
+   * without, but what lies between corners may be missed: there is no bound on the error. Default: 0, every pixel. Not
+   * with several samples, channels, or a blend mode other than composite (TETCAST_ERROR_ARGUMENT). */
+  int adaptive_coarse;
+  /* With adaptive_coarse, finite and ≥ 0, in the units of the channels, colours premultiplied. 0 (the default): no
+   * square is left whole, and the picture is, to the bit, the one without adaptive_coarse and with adaptive_fine
+   * samples. */
+  double adaptive_epsilon;
+  /* With adaptive_coarse, in [1, 2^16]: how many rays, on a grid as with `samples`, are cast through a pixel that
+   * differs by adaptive_epsilon or more from one of its four neighbours. Default: 1, none but the first. */
+  int adaptive_fine;
   /* Called while the picture is made (context.h). Default: not called. */
   TetcastProgress progress;
 } TetcastRenderDesc;
@@ -179,12 +193,13 @@ TETCAST_API TetcastRenderDesc tetcast_render_desc_default(void);
 
 /* What was done to make a picture. */
 typedef struct TetcastRenderStats {
-  /* The number of rays cast: width × height × samples. */
+  /* The number of rays cast: width × height × samples, or with adaptive_coarse how many there were. */
   int64_t rays;
   /* The number of cells crossed over a length > 0, summed over the rays. */
   int64_t segments;
   /* The largest of the pixels' error bounds (TETCAST_CHANNEL_ERROR), ≥ 0. NaN with an integrator other than the exact
-   * one, with a blend mode other than composite, and where neither that channel nor a tolerance was asked for. */
+   * one, with a blend mode other than composite, with adaptive_coarse, and where neither that channel nor a tolerance
+   * was asked for. */
   double error;
   /* The number of rays whose walk ended before the boundary. Anything but 0 is a defect of tetcast. */
   int64_t lost;

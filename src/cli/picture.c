@@ -133,7 +133,13 @@ int picture_render(Run *run) {
   if (!stats->render_seconds)
     stats->render_seconds = cli_allocate(sizeof(double) * (size_t)stats->repeats);
   TetcastRenderDesc desc = tetcast_render_desc_default();
-  desc.samples = (int)run->options.samples;
+  if (render_options_adaptive(&run->options)) {
+    desc.adaptive_epsilon = run->options.adaptive[0];
+    desc.adaptive_coarse = (int)run->options.adaptive[1];
+    desc.adaptive_fine = (int)run->options.adaptive[2];
+  } else {
+    desc.samples = (int)run->options.samples;
+  }
   desc.isa = (TetcastIsa)run->options.isa;
   desc.tolerance = stats->tolerance = run->options.tolerance;
   stats->blend = render_option_choice(OPTION_BLEND, (int)render_options_blend(&run->options));

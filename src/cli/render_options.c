@@ -94,8 +94,12 @@ const RenderRow render_table[OPTION_COUNT] = {
                       .form = "expected a height above 0"},
     [OPTION_SIZE] = {"size", KIND_INTEGERS, AT(size), 2, 2, 1, 1 << 20,
                      .form = "expected WxH: whole numbers from 1 to 1048576, no more than 2^30 pixels"},
-    [OPTION_SAMPLES] = {"samples", KIND_INTEGERS, AT(samples), 1, 1, 1, 65536, .only = COMMAND_RENDER,
-                        .form = "expected a whole number from 1 to 65536"},
+    [OPTION_SAMPLES] = {"samples", KIND_INTEGERS, AT(samples), 1, 1, 1, 65536, .excludes = BIT(OPTION_ADAPTIVE),
+                        .only = COMMAND_RENDER, .form = "expected a whole number from 1 to 65536"},
+    [OPTION_ADAPTIVE] = {"adaptive", KIND_NUMBERS, AT(adaptive), 1, 3, 0, DBL_MAX, .excludes = BIT(OPTION_SAMPLES),
+                         .only = COMMAND_RENDER,
+                         .form = "expected EPS[,COARSE[,FINE]]: a number, 0 or above, a power of two from 1 to 64, and "
+                                 "a whole number from 1 to 65536"},
     [OPTION_BACKGROUND] = {"background", KIND_NUMBERS, AT(background), 3, 4, 0, 1, .only = COMMAND_RENDER,
                            .form = "expected r,g,b or r,g,b,a from 0 to 1, a name such as white or transparent, or "
                                    "#rrggbb"},
@@ -406,6 +410,19 @@ static const char *set_range(RenderOptions *options, const OptionValue *value) {
   return reason;
 }
 
+static const char *set_adaptive(double adaptive[3], const OptionValue *value) {
+  double given[3] = {0, 4, 1};
+  const char *reason = set_numbers(OPTION_ADAPTIVE, given, value);
+  if (reason)
+    return reason;
+  const double coarse = given[1], fine = given[2];
+  if (!(coarse >= 1 && coarse <= 64 && exp2(floor(log2(coarse))) == coarse) ||
+      !(fine >= 1 && fine <= 65536 && fine == floor(fine)))
+    return render_table[OPTION_ADAPTIVE].form;
+  memcpy(adaptive, given, sizeof given);
+  return NULL;
+}
+
 /* One half-space more. */
 static const char *add_half_space(RenderOptions *options, const OptionValue *value) {
   const double *n = value->numbers;
@@ -422,6 +439,8 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
     return set_range(options, value);
   if (id == OPTION_BACKGROUND)
     return set_color(id, at, value);
+  if (id == OPTION_ADAPTIVE)
+    return set_adaptive(options->adaptive, value);
   if (id == OPTION_CLIP)
     return add_half_space(options, value);
   switch (render_table[id].kind) {

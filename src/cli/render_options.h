@@ -48,6 +48,7 @@ typedef enum OptionId {
   OPTION_ORTHO,
   OPTION_SIZE,
   OPTION_SAMPLES,
+  OPTION_ADAPTIVE,
   OPTION_BACKGROUND,
   OPTION_INTEGRATOR,
   OPTION_TOLERANCE,
@@ -91,7 +92,7 @@ typedef struct RenderOptions {
   int clip_count, clip_capacity;
   double clip_box[6]; /* x0, x1, y0, … */
   double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], tolerance, threads, repeat;
-  double material[4];
+  double material[4], adaptive[3]; /* epsilon, coarse, fine */
   TextList isosurfaces, slices, lights;
   double merge_tolerance; /* negative unless given */
   RangeKind range_kind;   /* RANGE_FIXED: options->range */
@@ -166,6 +167,11 @@ static inline bool render_options_surfaces(const RenderOptions *options) {
 /* Whether surfaces are all there is to see: no transfer function was given beside them. */
 static inline bool render_options_surfaces_alone(const RenderOptions *options) {
   return render_options_surfaces(options) && !render_options_given(options, OPTION_TRANSFER);
+}
+
+/* Whether rays are cast only where the picture has something to show. */
+static inline bool render_options_adaptive(const RenderOptions *options) {
+  return render_options_given(options, OPTION_ADAPTIVE);
 }
 
 /* The TetcastChannel bits of a list as --channels has it, 0: there is something else in it. */

@@ -25,6 +25,10 @@ static const char *find_mixture(const RenderOptions *options) {
   const uint32_t channels = render_options_channels(options);
   if (channels & TETCAST_CHANNEL_DEPTH && channels & TETCAST_CHANNEL_ERROR)
     return "--channels: error and depth are not possible in one picture";
+  if (render_options_adaptive(options) && channels)
+    return "--channels, --groups: not possible with --adaptive, which interpolates between rays";
+  if (render_options_adaptive(options) && render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
+    return "--adaptive: needs --blend composite";
   if (render_options_surfaces(options)) {
     if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
       return "--isosurface, --slice, --surface: need --blend composite";

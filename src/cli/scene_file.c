@@ -294,7 +294,10 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
   clip_write(options, scene);
   json_object_set_new(scene, "camera", camera_object(camera));
   json_object_set_new(scene, "size", size_array(options->size));
-  json_object_set_new(scene, "samples", json_integer((json_int_t)options->samples));
+  if (render_options_adaptive(options))
+    json_object_set_new(scene, "adaptive", cli_json_array(options->adaptive, 3));
+  else
+    json_object_set_new(scene, "samples", json_integer((json_int_t)options->samples));
   json_object_set_new(scene, "background", cli_json_array(options->background, 4));
   if (options->integrator)
     json_object_set_new(scene, "integrator", json_string(options->integrator));

@@ -7,7 +7,7 @@
 #include "base/cpu.h"
 #include "base/parallel.h"
 #include "optics/sampled.h"
-#include "render/render.h"
+#include "render/work.h"
 
 /* ── the choice among kernels ── */
 
@@ -147,26 +147,7 @@ bool tc_worker_failed(const TcWorker *worker) {
 
 /* ── a frame ── */
 
-typedef struct Working {
-  TcWorker worker;
-  double *sums; /* [TC_TILE²][job.sums]: of the tile under way */
-  double error; /* the largest of the pixels' bounds so far */
-} Working;
-
-typedef struct Render {
-  TcJob job, precise;
-  const TetcastScene *scene;
-  TetcastFrame *frame;
-  const TcIsaKernels *kernels;
-  TcScreen screen;
-  TcSurfaces surfaces;
-  Working *workers;
-  bool bounded; /* a bound on the error is gathered as well */
-  bool plain;   /* the sums are the frame's pixels as they are, and there are no channels */
-  int64_t tiles_x, tiles_y;
-} Render;
-
-static bool render_tile(const Render *render, int64_t tile_x, int64_t tile_y, Working *working) {
+static bool render_tile(const TcRender *render, int64_t tile_x, int64_t tile_y, TcWorking *working) {
   const TcJob *job = &render->job;
   const int64_t x0 = tile_x * TC_TILE, y0 = tile_y * TC_TILE;
   const int64_t x1 = x0 + TC_TILE < job->width ? x0 + TC_TILE : job->width,
@@ -186,14 +167,8 @@ static bool render_tile(const Render *render, int64_t tile_x, int64_t tile_y, Wo
     }
     return true;
   }
-  TcGathered gathered = {.sums = working->sums,
-                         .bounded = render->bounded,
-                         .coefficients = job->coefficients,
-                         .exponent = job->shell->volume->exponent};
-  if (job->blend) {
-    gathered.colors = &render->scene->transfer->pieces;
-    gathered.value_exponent = job->values->exponent + (job->blend == TETCAST_BLEND_ADDITIVE ? gathered.exponent : 0);
-  }
+  TcGathered gathered = tc_render_gathered(render);
+  gathered.sums = working->sums;
   for (int64_t y = y0; y < y1; ++y) {
     for (int64_t x = x0; x < x1; ++x, gathered.sums += job->sums) {
       const double bound = tc_frame_store(render->frame, x, y, &gathered);
@@ -204,36 +179,18 @@ static bool render_tile(const Render *render, int64_t tile_x, int64_t tile_y, Wo
   return true;
 }
 
-/* The number made of the bits 0, 2, 4, … of i: the place along one axis of the i-th square of Morton's curve. */
-static int64_t even_bits(int64_t i) {
-  int64_t result = 0;
-  for (int bit = 0; i >> 2 * bit; ++bit)
-    result |= (i >> 2 * bit & 1) << bit;
-  return result;
-}
-
 /* Renders tiles `begin` to `end` along Morton's curve. As these are neighbours, their rays meet many of the same cells,
  * which are still in the cache. */
 static bool render_tiles(void *data, int64_t begin, int64_t end, int worker) {
-  Render *render = data;
+  TcRender *render = data;
   for (int64_t i = begin; i < end; ++i) {
-    const int64_t x = even_bits(i), y = even_bits(i >> 1);
+    const int64_t x = tc_even_bits(i), y = tc_even_bits(i >> 1);
     if (x >= render->tiles_x || y >= render->tiles_y)
       continue;
     if (!render_tile(render, x, y, &render->workers[worker]))
       return false;
   }
   return true;
-}
-
-/* Chooses a grid of exactly `samples` points, as near to square as its divisors allow, and not higher than wide. */
-static void sample_grid(int samples, int *x, int *y) {
-  *y = 1;
-  for (int i = 2; i * i <= samples; ++i) {
-    if (samples % i == 0)
-      *y = i;
-  }
-  *x = samples / *y;
 }
 
 /* ── vertices on the screen ── */
@@ -292,7 +249,7 @@ static void keep_vertices(const TetcastScene *scene, const TcJob *job, bool sing
  * did. The bound leaves out two things, with which single precision isn't used: the borders of holes in the field, at
  * which what is seen jumps, and meshes that fold over themselves, where paths of rays change by leaps. */
 static bool allow_single(const TetcastScene *scene, const TetcastRenderDesc *desc, const TcScreen *setup,
-                         Render *render) {
+                         TcRender *render) {
   const TcIsaKernels *kernels = tc_single_kernels_for(desc->isa);
   TcJob *job = &render->job;
   double values;
@@ -313,7 +270,7 @@ static bool allow_single(const TetcastScene *scene, const TetcastRenderDesc *des
 
 /* Decides whether vertices are projected and which precision is used, and sets the tolerance and the error bounds'
  * terms accordingly. */
-static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *desc, bool measured, Render *render) {
+static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *desc, bool measured, TcRender *render) {
   TcJob *job = &render->job;
   TcScreen setup;
   const int64_t rays = job->width * job->height * desc->samples;
@@ -337,29 +294,39 @@ static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *de
   return project(scene, render->kernels, &setup, job, &render->screen);
 }
 
-/* Renders all tiles, and sums up what the workers have counted. */
-static TetcastStatus run(Render *render, const TetcastProgress *progress, TetcastRenderStats *stats) {
+/* Renders all tiles. */
+static TetcastStatus run_tiles(TcRender *render, const TetcastProgress *progress) {
+  render->tiles_x = (render->job.width + TC_TILE - 1) / TC_TILE;
+  render->tiles_y = (render->job.height + TC_TILE - 1) / TC_TILE;
+  int64_t side = 1;
+  while (side < render->tiles_x || side < render->tiles_y)
+    side *= 2;
+  return tc_parallel_for(render->scene->context, side * side, 1, render_tiles, render, progress);
+}
+
+/* Renders the frame, and sums up what the workers have counted. */
+static TetcastStatus run(TcRender *render, const TetcastRenderDesc *desc, TetcastRenderStats *stats) {
   TetcastContext *context = render->scene->context;
   const int threads = tc_context_threads(context);
   if (!tc_allocate_array(context, (void **)&render->workers, threads, sizeof *render->workers, "workers"))
     return TETCAST_ERROR_MEMORY;
   bool ok = true;
   for (int i = 0; i < threads; ++i) {
-    Working *w = &render->workers[i];
+    TcWorking *w = &render->workers[i];
     ok = tc_worker_begin(context, render->kernels, &render->job, &w->worker) && ok;
     w->sums = tc_allocate(context, TC_TILE * TC_TILE * (int64_t)render->job.sums, sizeof *w->sums);
     w->error = 0;
     ok = ok && w->sums;
   }
-  render->tiles_x = (render->job.width + TC_TILE - 1) / TC_TILE;
-  render->tiles_y = (render->job.height + TC_TILE - 1) / TC_TILE;
-  int64_t side = 1;
-  while (side < render->tiles_x || side < render->tiles_y)
-    side *= 2;
-  TetcastStatus status = ok ? tc_parallel_for(context, side * side, 1, render_tiles, render, progress)
-                            : tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: workers");
+  TetcastStatus status = TETCAST_OK;
+  if (!ok)
+    status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: workers");
+  else if (desc->adaptive_coarse > 0)
+    status = tc_adaptive_run(render, desc, &stats->rays);
+  else
+    status = run_tiles(render, &desc->progress);
   for (int i = 0; i < threads; ++i) {
-    Working *w = &render->workers[i];
+    TcWorking *w = &render->workers[i];
     stats->segments += w->worker.segments;
     stats->lost += w->worker.lost;
     if (!(w->error <= stats->error))
@@ -373,18 +340,24 @@ static TetcastStatus run(Render *render, const TetcastProgress *progress, Tetcas
   return status;
 }
 
-TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
+TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *given,
                               TetcastFrame *frame, TetcastRenderStats *stats) {
   TetcastContext *context = scene->context;
+  TetcastRenderDesc all = *given;
+  if (all.adaptive_coarse > 0 && all.adaptive_epsilon == 0) { /* no two corners differ by less: all rays are cast */
+    all.samples = all.adaptive_fine;
+    all.adaptive_coarse = 0;
+  }
+  const TetcastRenderDesc *desc = &all;
   const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
   const bool depth = tc_frame_channel(frame, TETCAST_CHANNEL_DEPTH) != NULL;
   const bool measured = exact && !scene->blend && !depth && !tc_scene_has_surfaces(scene) &&
                         (desc->tolerance > 0 || tc_frame_channel(frame, TETCAST_CHANNEL_ERROR));
-  Render render = {.scene = scene, .frame = frame};
+  TcRender render = {.scene = scene, .frame = frame};
   TcJob *job = &render.job;
   job->width = frame->width;
   job->height = frame->height;
-  sample_grid(desc->samples, &job->samples_x, &job->samples_y);
+  tc_sample_grid(desc->samples, &job->samples_x, &job->samples_y);
   TetcastStatus status =
       tc_view_create(context, camera, scene->volume, (double)frame->width / (double)frame->height, &job->view);
   if (!status && !scene->coefficients && !scene->blend)
@@ -415,10 +388,10 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
                             .isa = render.kernels->name,
                             .precision = render.kernels->precision};
   if (!status)
-    status = run(&render, &desc->progress, &sum);
+    status = run(&render, desc, &sum);
   keep_vertices(scene, job, job->precise != NULL);
   tc_sampler_destroy(sampler);
-  if (!measured)
+  if (!measured || desc->adaptive_coarse > 0)
     sum.error = NAN;
   if (!status && stats)
     *stats = sum;

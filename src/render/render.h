@@ -72,6 +72,8 @@ TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *d
 void tc_frame_destroy(TetcastFrame *frame);
 /* Colours pixels by their values in a channel that the frame has. */
 void tc_frame_recolor(TetcastFrame *frame, const TcPieces *colors);
+/* Stores a pixel's red, green, blue and alpha. Returns how far rounding to the frame's type has moved any of them. */
+double tc_frame_put(TetcastFrame *frame, int64_t x, int64_t y, const double rgba[4]);
 /* Stores a pixel and its values of all channels. Returns a bound on its error, rounding to the frame's type included;
  * NaN: not known. */
 double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, TcGathered *gathered);
@@ -99,7 +101,7 @@ TetcastStatus tc_scene_prepare(const TetcastScene *scene);
  * scene had before, or NULL. */
 void *tc_scene_swap_vertices(const TetcastScene *scene, bool single, void *vertices);
 
-TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
+TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *given,
                               TetcastFrame *frame, TetcastRenderStats *stats);
 
 /* Colour map `name` over [low, high] with an extinction that makes a good first picture of the scene's volume and

@@ -123,7 +123,8 @@ typedef struct Feature {
   Times times;
   TetcastRenderStats stats;
   TetcastBlend blend;
-  int planes; /* 1: clipped to `oblique` */
+  int planes;      /* 1: clipped to `oblique` */
+  double adaptive; /* rays are cast where pixels differ by so much, from every fourth pixel on; 0: everywhere */
 } Feature;
 
 /* At equal distances over the range of the scalar. */
@@ -182,6 +183,7 @@ void job_features(const Job *job) {
       {.name = "both with knots and a clip", .transfer = &transfer_soft, .planes = 1},
       {.name = "3 opaque lit isosurfaces alone", .transfer = &clear, .isosurfaces = 3},
       {.name = "3 lit isosurfaces in the volume", .transfer = &transfer_linear, .isosurfaces = -3},
+      {.name = "adaptive, from 4th pixels to 0.01", .transfer = &transfer_linear, .adaptive = 0.01},
       {.name = "channel of depth", .transfer = &transfer_linear, .channels = TETCAST_CHANNEL_DEPTH},
   };
   const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
@@ -208,6 +210,8 @@ void job_features(const Job *job) {
       must(tetcast_scene_set_clip(tet.scene, &oblique, feature->planes) == TETCAST_OK, "set clip");
       TetcastRenderDesc desc = tetcast_render_desc_default();
       desc.samples = feature->samples > 0 ? feature->samples : 1;
+      desc.adaptive_epsilon = feature->adaptive;
+      desc.adaptive_coarse = feature->adaptive > 0 ? 4 : 0;
       const TetcastType type = feature->type ? feature->type : TETCAST_TYPE_FLOAT64;
       TetcastFrame *frame = tet_frame(&tet, job->options->pixels, type, feature->channels);
       tet_render(&tet, &camera, NULL, frame, NULL);

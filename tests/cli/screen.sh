@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+# tetcast render: which rays make the picture, and what it has besides.
+. "$(dirname "$0")/lib.sh"
+needs vtk openimageio
+vtu cube.vtu "$five_tetrahedra" 10 # s = x + 2 y + 3 z
+view='--array s --eye 3,2,5 --size 61x43'
+
+# rays FILE: how many a run took.
+rays() { tr -d ' \n' <"$1" | sed 's/.*"rays":\([0-9]*\).*/\1/'; }
+
+# ── few rays ──
+
+accept render cube.vtu -o plain.png $view --stats plain.json
+accept render cube.vtu -o four.png $view --samples 4
+accept render cube.vtu -o all.png $view --adaptive 0
+same all.png plain.png 'a difference of 0'
+accept render cube.vtu -o all.png $view --adaptive 0,8,4
+same all.png four.png 'a difference of 0, with samples'
+for way in '--threads 1' '--threads 3' '--repeat 2'; do
+  accept render cube.vtu -o few.png $view --adaptive 0.1,8 --stats few.json --save-scene few-scene.json $way
+  [ ! -e first.png ] || same few.png first.png "$way"
+  cp few.png first.png
+done
+differ few.png plain.png 'rays were left out'
+[ "$(rays plain.json)" = $((61 * 43)) ] || fail "rays: $(rays plain.json)"
+[ "$(rays few.json)" -lt $((61 * 43 / 2)) ] || fail "rays of few: $(rays few.json)"
+accept render --scene few-scene.json -o again.png
+same again.png few.png 'scene of few'
+accept render --scene few-scene.json -o other.png --samples 1 # takes the place of the scene's key
+same other.png plain.png 'samples in place of few'
+accept render cube.vtu -o few.png $view --adaptive 0.1
+accept render --scene few-scene.json -o other.png --adaptive 0.1 # 4, not the scene's 8
+same other.png few.png 'the number by default'
+refuse 2 'exclude each other' render cube.vtu --adaptive 0.1 --samples 4
+refuse 2 'not possible with --adaptive' render cube.vtu -o a.exr --adaptive 0.1 --channels depth
+refuse 2 'needs --blend composite' render cube.vtu --adaptive 0.1 --blend maximum
+for text in x -1 nan 0.1,3 0.1,0 0.1,128 0.1,4.5 0.1,4,0 0.1,4,1.5 0.1,4,70000 0.1,4,1,1; do
+  refuse 2 'expected EPS' render cube.vtu --adaptive $text
+done
+finish
