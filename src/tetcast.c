@@ -681,12 +681,26 @@ TetcastStatus tetcast_scene_set_boundary(TetcastScene *scene, const TetcastBound
     return ARGUMENT(context, "boundary: an opacity of %g, must be in [0, 1]", boundary->opacity);
   if (boundary && boundary->colored && !is_color(boundary->color))
     return ARGUMENT(context, "boundary: a colour is negative or not finite");
+  if (boundary && boundary->edges && !is_color(boundary->edge_color))
+    return ARGUMENT(context, "boundary: the colour of edges is negative or not finite");
   if (boundary && boundary->opacity > 0 && scene->volume->traversal == TETCAST_TRAVERSAL_FACES)
     return ARGUMENT(context, "the mesh's boundary is seen by the traversal shell only");
   scene->boundary = boundary ? *boundary : (TetcastBoundary){.opacity = 0};
   if (!scene->boundary.colored)
     memset(scene->boundary.color, 0, sizeof scene->boundary.color);
   tc_scene_forget(scene);
+  return TETCAST_OK;
+}
+
+TetcastStatus tetcast_scene_set_outline(TetcastScene *scene, const double color[3]) {
+  TC_ENTRY;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
+  if (color && !is_color(color))
+    return ARGUMENT(scene->context, "outline: a colour is negative or not finite");
+  scene->outlined = color != NULL;
+  for (int k = 0; color && k < 3; ++k)
+    scene->outline_color[k] = color[k];
   return TETCAST_OK;
 }
 
@@ -860,6 +874,8 @@ static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderD
       return ARGUMENT(context, "a frame of %d groups, but the scene has %d", frame->groups, c->groups);
     }
   }
+  if (scene->outlined && tc_frame_channel(frame, TETCAST_CHANNEL_VALUE))
+    return ARGUMENT(context, "with an outline there is no channel value, by which pictures are coloured anew");
   if (c && scene->blend)
     return ARGUMENT(context, "with coefficients there is only the blend mode composite");
   if (scene->blend && !exact)

@@ -38,6 +38,11 @@ typedef struct TetcastImageDesc {
   double background[4];
   /* Not 0: only the frame's channels are written, without red, green, blue and alpha; it must have some. Default: 0. */
   int channels_only;
+  /* [channel_count]: the frame's channels that are written, in this order, none twice. NULL (the default): all of them,
+   * in the order of tetcast_channel_info(). EXR knows channels by their names alone. */
+  const TetcastChannel *channels;
+  /* The number of `channels`. Default: 0. */
+  int channel_count;
 } TetcastImageDesc;
 
 /* Makes a desc with every setting at its default. */
@@ -49,9 +54,8 @@ TETCAST_API TetcastImageDesc tetcast_image_desc_default(void);
  * background, integer formats with alpha hold unassociated colour; .webp takes none. What a format or type can't hold,
  * such as 70000 as half or a negative colour in .hdr, is TETCAST_ERROR_ARGUMENT; beyond the range of a float it is
  * infinite. A frame's channels follow the four in .exr and .tif with floating-point pixels (float beside half in .exr),
- * in this order and in EXR by these names: "radiance", "optical_depth", "transmittance", "path_length", "error"; of
- * several groups "radiance.00", "radiance.01" …, as many digits as the last needs. What can't hold them:
- * TETCAST_ERROR_ARGUMENT.
+ * in EXR by their file names (TetcastChannelInfo); of several groups "radiance.00", "radiance.01" …, as many digits as
+ * the last needs. What can't hold them: TETCAST_ERROR_ARGUMENT.
  *
  * The file appears whole or not at all; one that is replaced keeps its mode, and a symbolic link is followed. While it
  * is written it is a hidden file beside its place, .tetcast-PROCESS-NUMBER with the same extension, under a lock

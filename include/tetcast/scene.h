@@ -88,6 +88,13 @@ TETCAST_API TetcastStatus tetcast_scene_set_slices(TetcastScene *scene, const Te
  * no boundary, it is TETCAST_ERROR_ARGUMENT. Must not run while this scene renders. */
 TETCAST_API TetcastStatus tetcast_scene_set_boundary(TetcastScene *scene, const TetcastBoundary *boundary);
 
+/* Draws the edges of the mesh's bounding box into pictures, about a pixel wide, in this colour: red, green and blue,
+ * not premultiplied, each at least 0 and finite. NULL: they aren't drawn, as in a new scene. They are composited where
+ * they are: those of the box's faces that are seen from outside lie before all of the mesh, others behind it; what
+ * TetcastRenderDesc.stop hides is not drawn. Channels don't know of them, and a frame with TETCAST_CHANNEL_VALUE, which
+ * can be coloured anew, has none (TETCAST_ERROR_ARGUMENT when rendering). Must not run while this scene renders. */
+TETCAST_API TetcastStatus tetcast_scene_set_outline(TetcastScene *scene, const double color[3]);
+
 /* Sets the light; `desc` may be NULL: as a new scene has it, the default. Must not run while this scene renders. On
  * error the scene keeps what it had. */
 TETCAST_API TetcastStatus tetcast_scene_set_shading(TetcastScene *scene, const TetcastShadingDesc *desc);

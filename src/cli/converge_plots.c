@@ -31,29 +31,29 @@ typedef struct Curve {
 } Curve;
 
 static const Curve scene_curves[] = {
-    {"exact", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, false, "#000000", 15, false},
-    {"tolerance", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, true, "#E69F00", 11, false},
-    {"midpoint", STUDY_TIME, TETCAST_INTEGRATOR_MIDPOINT, false, "#0072B2", 7, false},
-    {"trapezoid", STUDY_TIME, TETCAST_INTEGRATOR_TRAPEZOID, false, "#D55E00", 5, false},
-    {"gauss", STUDY_TIME, TETCAST_INTEGRATOR_GAUSS, false, "#009E73", 9, false},
-    {"table", STUDY_TIME, TETCAST_INTEGRATOR_TABLE, false, "#CC79A7", 13, false},
+    {"exact", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, false, "#000000", 15, false, false},
+    {"tolerance", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, true, "#E69F00", 11, false, false},
+    {"midpoint", STUDY_TIME, TETCAST_INTEGRATOR_MIDPOINT, false, "#0072B2", 7, false, false},
+    {"trapezoid", STUDY_TIME, TETCAST_INTEGRATOR_TRAPEZOID, false, "#D55E00", 5, false, false},
+    {"gauss", STUDY_TIME, TETCAST_INTEGRATOR_GAUSS, false, "#009E73", 9, false, false},
+    {"table", STUDY_TIME, TETCAST_INTEGRATOR_TABLE, false, "#CC79A7", 13, false, false},
 };
 /* In the plot of time alone. */
 static const Curve adaptive_curve = {"adaptive", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, false,
                                      "#56B4E9",  3,          .adaptive = true};
 /* In the plot of time alone: the same colours, open points. */
 static const Curve packet_curves[] = {
-    {"exact-packets", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, false, "#000000", 14, true},
-    {"tolerance-packets", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, true, "#E69F00", 10, true},
+    {"exact-packets", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, false, "#000000", 14, true, false},
+    {"tolerance-packets", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, true, "#E69F00", 10, true, false},
 };
 enum { PACKET_CURVES = sizeof packet_curves / sizeof *packet_curves };
 enum { SCENE_CURVES = sizeof scene_curves / sizeof *scene_curves };
 
 static const Curve refine_curves[] = {
-    {"exact", STUDY_REFINE, TETCAST_INTEGRATOR_EXACT, false, "#000000", 15, false},
-    {"midpoint-both", STUDY_REFINE, TETCAST_INTEGRATOR_MIDPOINT, false, "#E69F00", 6, false},
-    {"midpoint-integration", STUDY_INTEGRATION, TETCAST_INTEGRATOR_MIDPOINT, false, "#0072B2", 7, false},
-    {"gauss-integration", STUDY_INTEGRATION, TETCAST_INTEGRATOR_GAUSS, false, "#009E73", 9, false},
+    {"exact", STUDY_REFINE, TETCAST_INTEGRATOR_EXACT, false, "#000000", 15, false, false},
+    {"midpoint-both", STUDY_REFINE, TETCAST_INTEGRATOR_MIDPOINT, false, "#E69F00", 6, false, false},
+    {"midpoint-integration", STUDY_INTEGRATION, TETCAST_INTEGRATOR_MIDPOINT, false, "#0072B2", 7, false, false},
+    {"gauss-integration", STUDY_INTEGRATION, TETCAST_INTEGRATOR_GAUSS, false, "#009E73", 9, false, false},
 };
 enum { REFINE_CURVES = sizeof refine_curves / sizeof *refine_curves };
 

@@ -16,7 +16,8 @@ typedef struct Run {
   RenderOptions options;
   const CliImage *image;
   TetcastImageDesc image_desc;
-  double *stop; /* [height][width], of --stop-depth; NULL: none */
+  TetcastChannel channels[32]; /* of --channels, in its order */
+  double *stop;                /* [height][width], of --stop-depth; NULL: none */
   pthread_t image_thread;
   sem_t image_begun;
   bool image_pending; /* image_thread still has to be waited for */

@@ -65,6 +65,10 @@ static int check_image(Run *run) {
   run->image_desc = run->image->image_desc_default();
   run->image_desc.pixel_type = (TetcastPixelType)run->options.pixel_type;
   memcpy(run->image_desc.background, run->options.background, sizeof run->options.background);
+  if (run->options.channels) {
+    run->image_desc.channels = run->channels;
+    run->image_desc.channel_count = render_option_channel_list(run->options.channels, run->channels);
+  }
   run->image_desc.channels_only = render_options_given(&run->options, OPTION_GROUPS) && run->options.groups;
   cli_interrupt_hold(true); /* the check puts a file in a folder for a moment */
   const TetcastStatus status = run->image->image_check(run->stage.context, run->options.output, &run->image_desc);

@@ -34,6 +34,8 @@ typedef enum OptionId {
   OPTION_ISOSURFACE,
   OPTION_SLICE,
   OPTION_SURFACE,
+  OPTION_EDGES,
+  OPTION_OUTLINE,
   OPTION_SHADE,
   OPTION_NORMALS,
   OPTION_MATERIAL,
@@ -84,7 +86,7 @@ typedef struct RenderOptions {
   RenderCommand command;
   /* NULL unless given */
   char *input, *output, *array, *block, *time, *transfer, *preset, *extinction, *emission, *integrator, *channels,
-      *surface, *stats, *scene, *save_scene, *stop_depth;
+      *surface, *edges, *outline, *stats, *scene, *save_scene, *stop_depth;
   char **inputs; /* [input_count] of several files, the steps of a series; input is the first. NULL: one file */
   int input_count;
   json_t *transfer_object; /* of a scene file; instead of transfer */
@@ -176,6 +178,9 @@ static inline bool render_options_adaptive(const RenderOptions *options) {
 
 /* The TetcastChannel bits of a list as --channels has it, 0: there is something else in it. */
 uint32_t render_option_channels(const char *text);
+
+/* The same one by one, in the order of the list; returns how many there are. */
+int render_option_channel_list(const char *text, TetcastChannel channels[32]);
 
 /* Those of the frame; --groups alone means the radiance, or the transmittance when nothing is emitted. */
 uint32_t render_options_channels(const RenderOptions *options);

@@ -23,12 +23,22 @@ static const char *command_name(const RenderOptions *options) {
 /* What of coefficients and what of a transfer function doesn't go together. NULL: nothing. */
 static const char *find_mixture(const RenderOptions *options) {
   const uint32_t channels = render_options_channels(options);
-  if (channels & TETCAST_CHANNEL_DEPTH && channels & TETCAST_CHANNEL_ERROR)
-    return "--channels: error and depth are not possible in one picture";
+  const bool of_depth = channels & (TETCAST_CHANNEL_DEPTH | TETCAST_CHANNEL_NORMAL);
+  if (of_depth && channels & TETCAST_CHANNEL_ERROR)
+    return channels & TETCAST_CHANNEL_DEPTH ? "--channels: error and depth are not possible in one picture"
+                                            : "--channels: error and normal are not possible in one picture";
   if (render_options_adaptive(options) && channels)
     return "--channels, --groups: not possible with --adaptive, which interpolates between rays";
   if (render_options_adaptive(options) && render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
     return "--adaptive: needs --blend composite";
+  if (render_options_given(options, OPTION_EDGES) && !render_options_given(options, OPTION_SURFACE))
+    return "--edges: needs --surface, on which they are drawn";
+  if (render_options_given(options, OPTION_OUTLINE) &&
+      (channels & TETCAST_CHANNEL_VALUE ||
+       (render_options_blend(options) == TETCAST_BLEND_ADDITIVE && !render_options_given(options, OPTION_TRANSFER) &&
+        render_options_range(options) != RANGE_FIXED)))
+    return "--outline: not possible with --channels value, and with --blend additive only with --range LO,HI or "
+           "--transfer";
   if (render_options_surfaces(options)) {
     if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
       return "--isosurface, --slice, --surface: need --blend composite";
@@ -48,8 +58,8 @@ static const char *find_mixture(const RenderOptions *options) {
     if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE) {
       if (options->integrator && strcmp(options->integrator, "exact"))
         return "--integrator: with another --blend than composite there is only exact";
-      return channels & ~(uint32_t)TETCAST_CHANNEL_VALUE
-                 ? "--channels: only value is possible with another --blend than composite"
+      return channels & ~(uint32_t)(TETCAST_CHANNEL_VALUE | TETCAST_CHANNEL_CELLS)
+                 ? "--channels: only value and cells are possible with another --blend than composite"
                  : NULL;
     }
     if (channels & TETCAST_CHANNEL_VALUE)
@@ -58,12 +68,14 @@ static const char *find_mixture(const RenderOptions *options) {
     for (int i = 0;
          (info = tetcast_channel_info(i)) && !(channels & (uint32_t)info->channel && info->needs_coefficients);)
       i++;
-    return info ? "--channels: only error or depth is possible without --extinction or --emission" : NULL;
+    return info ? "--channels: only cells, error, or depth and normal are possible without --extinction or --emission"
+                : NULL;
   }
   if (options->integrator && strcmp(options->integrator, "exact"))
     return "--integrator: with --extinction or --emission there is only exact";
-  if (channels & TETCAST_CHANNEL_DEPTH)
-    return "--channels depth: not possible with --extinction or --emission";
+  if (of_depth)
+    return channels & TETCAST_CHANNEL_DEPTH ? "--channels depth: not possible with --extinction or --emission"
+                                            : "--channels normal: not possible with --extinction or --emission";
   if (channels & TETCAST_CHANNEL_VALUE)
     return "--channels value: not possible with --extinction or --emission";
   if (channels & TETCAST_CHANNEL_RADIANCE && !render_options_given(options, OPTION_EMISSION))
@@ -85,9 +97,10 @@ static char *find_fault(const RenderOptions *options) {
   int n;
   if (options->integrator)
     render_option_integrator(options->integrator, &integrator, &n);
-  if (integrator != TETCAST_INTEGRATOR_EXACT && (options->tolerance > 0 || options->channels))
+  const bool exactly = render_options_channels(options) & ~(uint32_t)TETCAST_CHANNEL_CELLS;
+  if (integrator != TETCAST_INTEGRATOR_EXACT && (options->tolerance > 0 || exactly))
     return cli_print("%s: only the exact integrator knows its error, not %s",
-                     options->channels ? "--channels error" : "--tolerance", options->integrator);
+                     exactly ? "--channels error" : "--tolerance", options->integrator);
   if (!render_options_channels(options))
     return NULL;
   const char *output = options->output ? options->output : ".png",
@@ -158,9 +171,14 @@ static void list_words(RenderCommand command, struct option words[OPTION_COUNT +
 }
 
 /* The value of an option that may have none: the next word, if it can be that. */
-static const char *take_optional(int argc, char **argv) {
+static const char *take_optional(OptionId id, int argc, char **argv) {
   TetcastBoundary boundary;
-  return optind < argc && surfaces_parse_boundary(argv[optind], &boundary) ? argv[optind++] : "";
+  double color[3];
+  if (optind >= argc)
+    return "";
+  const bool fits = id == OPTION_SURFACE ? surfaces_parse_boundary(argv[optind], &boundary)
+                                         : surfaces_parse_color(argv[optind], color);
+  return fits ? argv[optind++] : "";
 }
 
 /* The words of the command line; with `scene_only` everything but the options --scene and --help is left for later. */
@@ -182,7 +200,7 @@ static int parse_words(RenderOptions *options, int argc, char **argv, bool scene
       return cli_usage_error(command_name(options), "unknown option -output; did you mean --output?");
     const char *text = optarg;
     if (!text && render_table[id].kind == KIND_OPTIONAL)
-      text = take_optional(argc, argv);
+      text = take_optional(id, argc, argv);
     if (scene_only != (id == OPTION_SCENE))
       continue;
     const int result = set_from_text(options, id, text);

@@ -227,6 +227,8 @@ static json_t *text_array(const TextList *list) {
 }
 
 static void write_surfaces(json_t *scene, const RenderOptions *options) {
+  if (render_options_given(options, OPTION_OUTLINE))
+    json_object_set_new(scene, "outline", json_string(options->outline));
   if (!render_options_surfaces(options))
     return;
   if (options->isosurfaces.count > 0)
@@ -235,6 +237,8 @@ static void write_surfaces(json_t *scene, const RenderOptions *options) {
     json_object_set_new(scene, "slice", text_array(&options->slices));
   if (options->surface)
     json_object_set_new(scene, "surface", json_string(options->surface));
+  if (render_options_given(options, OPTION_EDGES))
+    json_object_set_new(scene, "edges", json_string(options->edges));
   if (render_options_given(options, OPTION_SHADE))
     json_object_set_new(scene, "shade", json_string(render_option_choice(OPTION_SHADE, options->shade)));
   if (render_options_given(options, OPTION_NORMALS))

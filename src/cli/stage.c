@@ -275,6 +275,8 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
     status = tetcast_scene_set_blend(stage->scene, render_options_blend(options));
   if (status == TETCAST_OK)
     status = clip_scene(stage->scene, options);
+  if (status == TETCAST_OK)
+    status = surfaces_outline(stage->scene, options);
   if (status != TETCAST_OK)
     return cli_failed(status);
   tetcast_volume_info(stage->volume, &stage->info);

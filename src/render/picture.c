@@ -6,7 +6,9 @@
 
 #include "base/cpu.h"
 #include "base/parallel.h"
+#include "base/vec3.h"
 #include "optics/sampled.h"
+#include "render/outline.h"
 #include "render/work.h"
 
 /* ── the choice among kernels ── */
@@ -77,7 +79,7 @@ static unsigned association_of(const TcRows *values) {
 static void see_through(const TcRows *values, const TcPieces *pieces, unsigned more, TcJob *job) {
   job->values = values;
   job->pieces = pieces;
-  job->sums = more & TC_BOUND ? 5 : job->surfaces && job->surfaces->depth ? 6 : 4;
+  job->sums = more & TC_BOUND ? 5 : !job->surfaces || !job->surfaces->depth ? 4 : job->surfaces->normal ? 9 : 6;
   job->tolerance = tc_tolerance_begin(pieces, 0);
   const unsigned needed = (pieces->one_color ? 0 : TC_COLORED) | (pieces->scaled ? TC_SCALED : 0) | more;
   job->kernel = choose_row(job->sampler ? "sampled" : "emission", (job->sampler ? 0 : needed) | association_of(values),
@@ -147,6 +149,25 @@ bool tc_worker_failed(const TcWorker *worker) {
 
 /* ── a frame ── */
 
+/* Counts the cells that the rays of a tile cross, whatever they hide, on a walk of its own. */
+static bool count_cells(const TcRender *render, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorking *working) {
+  const int64_t segments = working->worker.segments, pixels = (x1 - x0) * (y1 - y0);
+  const double samples = render->count.samples_x * render->count.samples_y;
+  const TcJob *job = &render->job;
+  TcWorker *worker = &working->worker;
+  void *const state = worker->state;
+  memset(working->cells, 0, (size_t)pixels * sizeof *working->cells);
+  if (job->precise)
+    worker->state = worker->precise_state;
+  const bool ok =
+      (job->precise ? job->precise : render->kernels)->tile(&render->count, x0, y0, x1, y1, worker, working->cells);
+  worker->state = state;
+  worker->segments = segments; /* which are those of the picture */
+  for (int64_t i = 0; i < pixels; ++i)
+    working->cells[i] /= samples;
+  return ok;
+}
+
 static bool render_tile(const TcRender *render, int64_t tile_x, int64_t tile_y, TcWorking *working) {
   const TcJob *job = &render->job;
   const int64_t x0 = tile_x * TC_TILE, y0 = tile_y * TC_TILE;
@@ -155,7 +176,8 @@ static bool render_tile(const TcRender *render, int64_t tile_x, int64_t tile_y, 
   const int64_t numbers = (x1 - x0) * (y1 - y0) * job->sums;
   const double samples = job->samples_x * job->samples_y;
   memset(working->sums, 0, (size_t)numbers * sizeof *working->sums);
-  if (!render->kernels->tile(job, x0, y0, x1, y1, &working->worker, working->sums))
+  if (!render->kernels->tile(job, x0, y0, x1, y1, &working->worker, working->sums) ||
+      (render->counted && !count_cells(render, x0, y0, x1, y1, working)))
     return false;
   for (int64_t i = 0; samples > 1 && i < numbers; ++i)
     working->sums[i] /= samples;
@@ -169,8 +191,9 @@ static bool render_tile(const TcRender *render, int64_t tile_x, int64_t tile_y, 
   }
   TcGathered gathered = tc_render_gathered(render);
   gathered.sums = working->sums;
+  gathered.cells = working->cells;
   for (int64_t y = y0; y < y1; ++y) {
-    for (int64_t x = x0; x < x1; ++x, gathered.sums += job->sums) {
+    for (int64_t x = x0; x < x1; ++x, gathered.sums += job->sums, ++gathered.cells) {
       const double bound = tc_frame_store(render->frame, x, y, &gathered);
       if (!(bound <= working->error))
         working->error = bound;
@@ -294,6 +317,20 @@ static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *de
   return project(scene, render->kernels, &setup, job, &render->screen);
 }
 
+/* Sets up the count of cells: as the picture, but of all the mesh and without light. */
+static void plan_count(TcRender *render) {
+  TcJob *count = &render->count;
+  bool one_lane;
+  *count = render->job.precise ? render->precise : render->job; /* it takes double precision */
+  count->kernel = choose_row("count", TC_CELLS, &one_lane);
+  count->shell = &render->scene->volume->shell;
+  count->pieces = NULL;
+  count->coefficients = NULL;
+  count->surfaces = NULL;
+  count->sampler = NULL;
+  count->sums = 1;
+}
+
 /* Renders all tiles. */
 static TetcastStatus run_tiles(TcRender *render, const TetcastProgress *progress) {
   render->tiles_x = (render->job.width + TC_TILE - 1) / TC_TILE;
@@ -316,7 +353,8 @@ static TetcastStatus run(TcRender *render, const TetcastRenderDesc *desc, Tetcas
     ok = tc_worker_begin(context, render->kernels, &render->job, &w->worker) && ok;
     w->sums = tc_allocate(context, TC_TILE * TC_TILE * (int64_t)render->job.sums, sizeof *w->sums);
     w->error = 0;
-    ok = ok && w->sums;
+    w->cells = render->counted ? tc_allocate(context, TC_TILE * TC_TILE, sizeof *w->cells) : NULL;
+    ok = ok && w->sums && (w->cells || !render->counted);
   }
   TetcastStatus status = TETCAST_OK;
   if (!ok)
@@ -335,6 +373,7 @@ static TetcastStatus run(TcRender *render, const TetcastRenderDesc *desc, Tetcas
       status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: hits of a ray");
     tc_worker_end(context, &w->worker);
     tc_release(context, w->sums);
+    tc_release(context, w->cells);
   }
   tc_release(context, render->workers);
   return status;
@@ -350,7 +389,8 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   }
   const TetcastRenderDesc *desc = &all;
   const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
-  const bool depth = tc_frame_channel(frame, TETCAST_CHANNEL_DEPTH) != NULL;
+  const bool normal = tc_frame_channel(frame, TETCAST_CHANNEL_NORMAL) != NULL,
+             depth = normal || tc_frame_channel(frame, TETCAST_CHANNEL_DEPTH);
   const bool measured = exact && !scene->blend && !depth && !tc_scene_has_surfaces(scene) &&
                         (desc->tolerance > 0 || tc_frame_channel(frame, TETCAST_CHANNEL_ERROR));
   TcRender render = {.scene = scene, .frame = frame};
@@ -363,8 +403,10 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   if (!status && !scene->coefficients && !scene->blend)
     status = tc_scene_prepare(scene);
   if (!status && !scene->coefficients && !scene->blend && (depth || tc_scene_has_surfaces(scene))) {
-    status = tc_scene_surfaces(scene, &render.surfaces);
+    status = tc_scene_surfaces(scene, normal, &render.surfaces);
     render.surfaces.depth = depth;
+    render.surfaces.view = &job->view;
+    render.surfaces.pixel = 2 * sqrt(tc_dot(job->view.up, job->view.up)) / (double)frame->height;
     job->surfaces = &render.surfaces;
   }
   TcSampler *sampler = NULL;
@@ -381,14 +423,19 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   tc_job_of_scene(scene, measured, job);
   const bool one_by_one = job->one_lane || scene->volume->traversal == TETCAST_TRAVERSAL_FACES;
   render.bounded = measured;
-  render.plain = job->pieces && !depth && frame->type == TETCAST_TYPE_FLOAT64 && !measured;
+  render.counted = tc_frame_channel(frame, TETCAST_CHANNEL_CELLS) != NULL;
+  render.plain = job->pieces && !depth && !render.counted && frame->type == TETCAST_TYPE_FLOAT64 && !measured;
   render.kernels = tc_kernels_for(one_by_one ? TETCAST_ISA_SCALAR : desc->isa);
   status = plan(scene, desc, measured, &render); /* this may change to kernels in single precision */
   TetcastRenderStats sum = {.rays = frame->width * frame->height * desc->samples,
                             .isa = render.kernels->name,
                             .precision = render.kernels->precision};
+  if (!status && render.counted)
+    plan_count(&render);
   if (!status)
     status = run(&render, desc, &sum);
+  if (!status && scene->outlined)
+    tc_outline_draw(scene, &job->view, desc->stop, frame);
   keep_vertices(scene, job, job->precise != NULL);
   tc_sampler_destroy(sampler);
   if (!measured || desc->adaptive_coarse > 0)

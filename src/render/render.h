@@ -23,7 +23,8 @@ struct TetcastFrame {
 };
 
 static inline int tc_frame_depth(const TetcastFrame *frame, int channel) {
-  return tc_channels[channel].info.of_groups ? frame->groups : 1;
+  const TetcastChannelInfo *info = &tc_channels[channel].info;
+  return info->of_groups ? frame->groups : info->components;
 }
 
 static inline void *tc_frame_channel(const TetcastFrame *frame, TetcastChannel channel) {
@@ -59,7 +60,9 @@ struct TetcastScene {
   int slice_count;
   TetcastBoundary boundary; /* opacity 0: it is not seen */
   TcLighting lighting;
-  TcHalfSpace *clip; /* [clip_count]; NULL: none */
+  bool outlined;           /* the edges of the mesh's bounding box are drawn */
+  double outline_color[3]; /* in this colour */
+  TcHalfSpace *clip;       /* [clip_count]; NULL: none */
   int clip_count;
   TcPrepared *prepared;
 };
@@ -89,8 +92,9 @@ bool tc_scene_has_surfaces(const TetcastScene *scene);
 TcLighting tc_lighting_of(const TetcastShadingDesc *desc);
 /* The scene's isosurfaces as its field is stored. */
 TetcastStatus tc_scene_scale_isosurfaces(const TetcastScene *scene, TetcastIsosurface **scaled);
-/* What kernels are to know of surfaces, once the scene is prepared. */
-TetcastStatus tc_scene_surfaces(const TetcastScene *scene, TcSurfaces *surfaces);
+/* What kernels are to know of surfaces, once the scene is prepared. `normals` tells whether these are wanted, light or
+ * not. */
+TetcastStatus tc_scene_surfaces(const TetcastScene *scene, bool normals, TcSurfaces *surfaces);
 /* What follows from field, transfer function and isosurfaces is to be made anew. */
 void tc_scene_forget(TetcastScene *scene);
 TetcastStatus tc_scene_set_coefficients(TetcastScene *scene, const TetcastCoefficientsDesc *desc);

@@ -76,14 +76,15 @@ static void take_largest(const TcLighting *lighting, const double color[3], TcSu
   }
 }
 
-TetcastStatus tc_scene_surfaces(const TetcastScene *scene, TcSurfaces *surfaces) {
+TetcastStatus tc_scene_surfaces(const TetcastScene *scene, bool normals, TcSurfaces *surfaces) {
   const TcLighting *lighting = &scene->lighting;
   TcPrepared *prepared = scene->prepared;
   *surfaces = (TcSurfaces){.count = scene->isosurface_count,
                            .surface = prepared->isosurfaces,
                            .lighting = lighting->surfaces ? lighting : NULL,
                            .slice_count = scene->slice_count,
-                           .boundary = scene->boundary};
+                           .boundary = scene->boundary,
+                           .normal = normals};
   for (int i = 0; i < surfaces->count; ++i)
     take_largest(surfaces->lighting, prepared->isosurfaces[i].color, surfaces);
   for (int i = 0; i < surfaces->slice_count; ++i) {
@@ -96,13 +97,17 @@ TetcastStatus tc_scene_surfaces(const TetcastScene *scene, TcSurfaces *surfaces)
   for (int k = 0; k < 3; ++k)
     surfaces->boundary.color[k] = fmin(surfaces->boundary.color[k], TC_LARGEST_COLOR);
   take_largest(surfaces->lighting, surfaces->boundary.color, surfaces);
+  for (int k = 0; surfaces->boundary.edges && k < 3; ++k) {
+    surfaces->boundary.edge_color[k] = fmin(surfaces->boundary.edge_color[k], TC_LARGEST_COLOR);
+    surfaces->largest[k] = fmax(surfaces->largest[k], surfaces->boundary.edge_color[k]);
+  }
   for (int64_t i = 0; scene->transfer && i < scene->transfer->color_count; ++i) { /* of slices and of the boundary */
     double color[3];
     for (int k = 0; k < 3; ++k)
       color[k] = fmin(scene->transfer->color[4 * i + 1 + k], TC_LARGEST_COLOR);
     take_largest(surfaces->lighting, color, surfaces);
   }
-  if (surfaces->count == 0 || !surfaces->lighting)
+  if (surfaces->count == 0 || !(surfaces->lighting || normals))
     return TETCAST_OK;
   if (!lighting->smooth || scene->values->association != TETCAST_POINT)
     return TETCAST_OK;

@@ -8,12 +8,13 @@
 /* What each worker has. */
 typedef struct TcWorking {
   TcWorker worker;
-  double *sums; /* [TC_TILE²][job.sums]: of the pixels under way */
-  double error; /* the largest of the pixels' bounds so far */
+  double *sums;  /* [TC_TILE²][job.sums]: of the pixels under way */
+  double *cells; /* [TC_TILE²]: how many cells their rays cross; NULL: not counted */
+  double error;  /* the largest of the pixels' bounds so far */
 } TcWorking;
 
 typedef struct TcRender {
-  TcJob job, precise;
+  TcJob job, precise, count;
   const TetcastScene *scene;
   TetcastFrame *frame;
   const TcIsaKernels *kernels;
@@ -21,6 +22,7 @@ typedef struct TcRender {
   TcSurfaces surfaces;
   TcWorking *workers; /* [threads] */
   bool bounded;       /* a bound on the error is gathered as well */
+  bool counted;       /* the cells that rays cross are counted as well */
   bool plain;         /* the sums are the frame's pixels as they are, and there are no channels */
   int64_t tiles_x, tiles_y;
 } TcRender;

@@ -124,6 +124,7 @@ typedef struct Feature {
   TetcastRenderStats stats;
   TetcastBlend blend;
   int planes;      /* 1: clipped to `oblique` */
+  int edges;       /* 1: an outline, and the boundary's triangles; 2: the boundary without its triangles */
   double adaptive; /* rays are cast where pixels differ by so much, from every fourth pixel on; 0: everywhere */
 } Feature;
 
@@ -136,6 +137,13 @@ static void set_isosurfaces(Tet *tet, int count) {
         .value = (i + 1.0) / (surfaces + 1), .color = {0.9, 0.5, 0.2}, .opacity = count < 0 ? 0.5 : 1};
   }
   must(tetcast_scene_set_isosurfaces(tet->scene, list, surfaces) == TETCAST_OK, "isosurfaces");
+}
+
+static void set_lines(Tet *tet, int edges) {
+  static const double black[3] = {0, 0, 0};
+  const TetcastBoundary boundary = {.opacity = 1, .colored = 1, .color = {1, 1, 1}, .edges = edges == 1};
+  must(tetcast_scene_set_boundary(tet->scene, edges ? &boundary : NULL) == TETCAST_OK, "boundary");
+  must(tetcast_scene_set_outline(tet->scene, edges == 1 ? black : NULL) == TETCAST_OK, "outline");
 }
 
 /* Its plane goes through the middle and cuts off what is next to the camera. */
@@ -183,8 +191,12 @@ void job_features(const Job *job) {
       {.name = "both with knots and a clip", .transfer = &transfer_soft, .planes = 1},
       {.name = "3 opaque lit isosurfaces alone", .transfer = &clear, .isosurfaces = 3},
       {.name = "3 lit isosurfaces in the volume", .transfer = &transfer_linear, .isosurfaces = -3},
-      {.name = "adaptive, from 4th pixels to 0.01", .transfer = &transfer_linear, .adaptive = 0.01},
+      {.name = "adaptive to 0.01 from 4th pixels on", .transfer = &transfer_linear, .adaptive = 0.01},
+      {.name = "boundary", .transfer = &clear, .edges = 2},
+      {.name = "boundary with edges and an outline", .transfer = &clear, .edges = 1},
       {.name = "channel of depth", .transfer = &transfer_linear, .channels = TETCAST_CHANNEL_DEPTH},
+      {.name = "channel of normals", .transfer = &transfer_linear, .channels = TETCAST_CHANNEL_NORMAL},
+      {.name = "channel of cells", .transfer = &transfer_linear, .channels = TETCAST_CHANNEL_CELLS},
   };
   const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
   Tet tet;
@@ -208,6 +220,7 @@ void job_features(const Job *job) {
       set_isosurfaces(&tet, feature->isosurfaces);
       must(tetcast_scene_set_blend(tet.scene, feature->blend) == TETCAST_OK, "set blend");
       must(tetcast_scene_set_clip(tet.scene, &oblique, feature->planes) == TETCAST_OK, "set clip");
+      set_lines(&tet, feature->edges);
       TetcastRenderDesc desc = tetcast_render_desc_default();
       desc.samples = feature->samples > 0 ? feature->samples : 1;
       desc.adaptive_epsilon = feature->adaptive;

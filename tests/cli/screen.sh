@@ -37,4 +37,50 @@ refuse 2 'needs --blend composite' render cube.vtu --adaptive 0.1 --blend maximu
 for text in x -1 nan 0.1,3 0.1,0 0.1,128 0.1,4.5 0.1,4,0 0.1,4,1.5 0.1,4,70000 0.1,4,1,1; do
   refuse 2 'expected EPS' render cube.vtu --adaptive $text
 done
+
+# ── channels ──
+
+accept render cube.vtu -o two.tif $view --isosurface 3:red --channels cells,normal,depth --save-scene two.json
+accept render cube.vtu -o other.tif $view --isosurface 3:red --channels depth,normal,cells
+differ two.tif other.tif 'the order of the channels'
+accept render --scene two.json -o again.tif
+same again.tif two.tif 'scene with channels'
+accept render cube.vtu -o cells.exr $view --blend maximum --channels value,cells
+accept render cube.vtu -o cells.exr --eye 3,2,5 --extinction s --channels cells,transmittance
+accept render cube.vtu -o cells.exr $view --integrator gauss:2 --channels cells
+accept render cube.vtu -o normal.exr $view --slice 1,0,0,0.5 --channels normal
+refuse 2 'error and normal' render cube.vtu -o a.exr --array s --channels normal,error
+refuse 2 'only the exact integrator' render cube.vtu -o a.exr --array s --integrator gauss:2 --channels cells,error
+refuse 2 'only value and cells' render cube.vtu -o a.exr --array s --blend maximum --channels normal
+refuse 2 'normal: not possible' render cube.vtu -o a.exr --emission s --channels normal
+
+# ── lines ──
+
+accept render cube.vtu -o box.png $view --outline --save-scene box.json
+accept render cube.vtu -o other.png $view --outline black
+same box.png other.png 'the colour by default'
+accept render --outline 0,0,0 cube.vtu $view -o other.png
+same box.png other.png 'a colour as the next word'
+accept render --outline cube.vtu $view -o other.png # which is no colour
+same box.png other.png 'no colour as the next word'
+accept render --scene box.json -o again.png
+same again.png box.png 'scene with an outline'
+differ box.png plain.png outline
+accept render cube.vtu -o dark.png $view --outline --background black
+accept render cube.vtu -o other.png $view --outline=white --background black
+same dark.png other.png 'the colour on a dark background'
+accept render cube.vtu -o other.png --extinction s --outline
+accept render cube.vtu -o other.png --array s --blend maximum --outline
+accept render cube.vtu -o other.png --array s --blend additive --range 0,9 --outline
+refuse 2 'only with --range' render cube.vtu -o a.png --array s --blend additive --outline
+refuse 2 'not possible with --channels value' render cube.vtu -o a.exr --array s --blend maximum --outline --channels value
+refuse 2 'expected nothing, or a colour' render cube.vtu --outline=nocolour
+
+accept render cube.vtu -o edges.png $view --surface white --edges red --save-scene edges.json
+accept render cube.vtu -o without.png $view --surface white
+differ edges.png without.png edges
+accept render --scene edges.json -o again.png
+same again.png edges.png 'scene with edges'
+refuse 2 'needs --surface' render cube.vtu --edges
+refuse 2 'expected nothing, or a colour' render cube.vtu --surface --edges=0.5
 finish

@@ -34,6 +34,7 @@ struct Extra {
   const char *name;
   const void *data; // [height][width][count]
   int count;
+  bool vector; // of X, Y, Z
 };
 
 // The frame's pixels, or the one pixel of a check.
@@ -53,12 +54,21 @@ struct Pixels {
   }
 };
 
-std::vector<Extra> extras_of(const TetcastFrame *frame) {
+void add_extra(const TetcastFrame *frame, const TetcastChannelInfo &info, std::vector<Extra> &extras) {
+  if (const void *data = tetcast_frame_channel(frame, info.channel))
+    extras.push_back(
+        {info.file_name, data, info.of_groups ? tetcast_frame_groups(frame) : info.components, info.components == 3});
+}
+
+// The channels in the order that is asked for, or in that of the table.
+std::vector<Extra> extras_of(const TetcastFrame *frame, const TetcastImageDesc *desc) {
   std::vector<Extra> extras;
   const TetcastChannelInfo *info;
-  for (int i = 0; (info = tetcast_channel_info(i)); ++i)
-    if (const void *data = tetcast_frame_channel(frame, info->channel))
-      extras.push_back({info->file_name, data, info->of_groups ? tetcast_frame_groups(frame) : 1});
+  const bool listed = desc && desc->channels;
+  for (int k = 0; k < (listed ? desc->channel_count : 1); ++k)
+    for (int i = 0; (info = tetcast_channel_info(i)); ++i)
+      if (!listed || info->channel == desc->channels[k])
+        add_extra(frame, *info, extras);
   return extras;
 }
 
@@ -301,6 +311,8 @@ bool write_rows(ImageOutput &output, const Pixels &pixels, const double backgrou
 std::string channel_name(const Extra &extra, int group) {
   if (extra.count == 1)
     return extra.name;
+  if (extra.vector)
+    return extra.name + std::string(".") + "XYZ"[group];
   const std::string number = std::to_string(group), last = std::to_string(extra.count - 1);
   return extra.name + ("." + std::string(last.size() - number.size(), '0')) + number;
 }
@@ -413,6 +425,9 @@ TetcastStatus guarded(TetcastContext *context, const char *path, const Pixels &p
   std::memcpy(&pixel_type, &desc.pixel_type, sizeof pixel_type);
   if (pixel_type < TETCAST_PIXEL_DEFAULT || pixel_type > TETCAST_PIXEL_DOUBLE)
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "unknown pixel type %d", pixel_type);
+  if (desc.channel_count < 0 || (desc.channels && publish && int(pixels.extras.size()) != desc.channel_count))
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
+                                 "image '%s': the frame lacks a channel that is to be written", path);
   if (desc.channels_only && pixels.extras.empty() && publish)
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
                                  "an image of a frame's channels only, but it has none");
@@ -444,6 +459,8 @@ TetcastImageDesc tetcast_image_desc_default(void) {
   TetcastImageDesc desc = {};
   desc.cookie = desc_cookie;
   desc.pixel_type = TETCAST_PIXEL_DEFAULT;
+  desc.channels = nullptr;
+  desc.channel_count = 0;
   for (double &value : desc.background)
     value = 1; // opaque white
   return desc;
@@ -459,7 +476,7 @@ TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, con
                          tetcast_frame_height(frame),
                          tetcast_frame_row_stride(frame),
                          tetcast_frame_type(frame) == TETCAST_TYPE_FLOAT64,
-                         extras_of(frame),
+                         extras_of(frame, desc),
                          desc && desc->channels_only};
   return guarded(context, path, pixels, desc, true);
 }
