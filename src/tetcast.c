@@ -909,18 +909,19 @@ static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderD
 }
 
 /* Whether the rays' ends are those of the frame's pixels. */
-static TetcastStatus check_stop(TetcastContext *context, const TetcastArray *stop, const TetcastFrame *frame) {
+static TetcastStatus check_stop(TetcastContext *context, const TetcastArray *stop, const char *name,
+                                const TetcastFrame *frame) {
   if (!tc_type_is_float(stop->type))
-    return ARGUMENT(context, "stop: the type must be float32 or float64");
+    return ARGUMENT(context, "%s: the type must be float32 or float64", name);
   if (stop->count != frame->width * frame->height) {
-    return ARGUMENT(context, "stop: %" PRId64 " distances for a frame of %" PRId64 " × %" PRId64 " pixels", stop->count,
-                    frame->width, frame->height);
+    return ARGUMENT(context, "%s: %" PRId64 " distances for a frame of %" PRId64 " × %" PRId64 " pixels", name,
+                    stop->count, frame->width, frame->height);
   }
   CHECK_GIVEN(context, stop->data);
   const int64_t stride = tc_array_stride(stop, 1);
   for (int64_t i = 0; i < stop->count; ++i) {
     if (isnan(tc_array_double(stop, stride, i, 0))) {
-      return ARGUMENT(context, "stop: the distance of pixel (%" PRId64 ", %" PRId64 ") is NaN", i % frame->width,
+      return ARGUMENT(context, "%s: the distance of pixel (%" PRId64 ", %" PRId64 ") is NaN", name, i % frame->width,
                       i / frame->width);
     }
   }
@@ -996,7 +997,9 @@ TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamer
   if (!status)
     status = check_camera(context, camera);
   if (!status && desc->stop)
-    status = check_stop(context, desc->stop, frame);
+    status = check_stop(context, desc->stop, "stop", frame);
+  if (!status && desc->start)
+    status = check_stop(context, desc->start, "start", frame);
   SceneRender call = {scene, camera, *desc, frame, stats};
   return status ? status : tc_call(scene_render, &call, &call.desc.progress);
 }

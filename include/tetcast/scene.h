@@ -177,6 +177,10 @@ typedef struct TetcastRenderDesc {
    * it, along the ray, not along the direction of view. So a picture is made that goes in front of opaque things of
    * other origin. Infinity: the ray doesn't end; 0 or less: it sees nothing; NaN is TETCAST_ERROR_ARGUMENT. */
   const TetcastArray *stop;
+  /* As `stop`: the distance from which on a ray sees anything; 0 or less: all of it. NULL (default): all rays see all.
+   * So pictures are made of parts of rays, which composited front to back give the whole. What is met exactly where one
+   * part ends and the next begins is in one of them, but for the boundary's faces, which may be in both. */
+  const TetcastArray *start;
   /* Above 0, a power of two up to 64: rays are cast where the picture has something to show, not through every pixel
    * (Levoy 1990). First there is one at every so many pixels, in both directions; a square between four of them is cut
    * into four, and so on down to single pixels, unless all four channels of its corners differ by less than

@@ -159,6 +159,11 @@ int picture_render(Run *run) {
     if (status != TETCAST_OK || cli_interrupted())
       return cli_failed(status);
   }
+  if (render_options_deep(&run->options)) {
+    const TetcastStatus status = deep_render(&run->deep, &run->stage, &run->options, &desc, run->frame);
+    if (status != TETCAST_OK || cli_interrupted())
+      return cli_failed(status);
+  }
   if (stats->render.lost > 0)
     cli_warning(
         "%lld of %lld rays were lost on their way through the mesh: the picture has faults there, please report this",
@@ -171,7 +176,10 @@ int picture_write(Run *run, const char *path) {
   const Stage *stage = &run->stage;
   picture_await_image(run);
   const double start = cli_seconds();
-  const TetcastStatus status = run->image->image_write(stage->context, path, run->frame, &run->image_desc);
+  const TetcastStatus status =
+      render_options_deep(&run->options)
+          ? run->image->image_write_deep(stage->context, path, &run->deep.image, run->image_desc.pixel_type)
+          : run->image->image_write(stage->context, path, run->frame, &run->image_desc);
   run->stats.write_seconds = cli_seconds() - start;
   run->stats.read_seconds = stage->read_seconds;
   run->stats.prepare_seconds = stage->prepare_seconds;

@@ -7,6 +7,7 @@
 #include <semaphore.h>
 
 #include "adapter.h"
+#include "deep.h"
 #include "json.h"
 #include "render_options.h"
 #include "stage.h"
@@ -24,6 +25,7 @@ typedef struct Run {
   Stage stage;
   TetcastFrame *frame;
   TetcastFrame *values; /* the same pixels with their values, where colours follow from them; NULL: they don't */
+  Deep deep;            /* of a deep picture; else zeros */
   RunStats stats;       /* of the last picture */
 } Run;
 

@@ -179,6 +179,7 @@ int tetcast_cli_render(int argc, char **argv) {
   tetcast_frame_destroy(&run.values);
   tetcast_frame_destroy(&run.frame);
   stage_release(&run.stage);
+  deep_release(&run.deep);
   free(run.stop);
   free(run.stats.render_seconds);
   render_options_release(&run.options);

@@ -33,7 +33,7 @@ const char render_help[] =
     "      --shade S           none, surfaces                   --normals N     smooth, flat\n"
     "      --light x,y,z[:COLOUR]   default: at the eye         --material A,D,S,E   default 0.2,0.8,0.2,30\n"
     "      --clip nx,ny,nz,d   shows what has n.x >= d; repeatable   --clip-box x0,x1,y0,y1,z0,z1\n"
-    "      --stop-depth FILE   rays stop at these distances: channel Z of an .exr or .tif\n"
+    "      --stop-depth FILE   rays stop at these distances: Z of an .exr or .tif   --deep [N]   deep pixels, .exr\n"
     "      --integrator I      exact, midpoint:N, trapezoid:N, gauss:N or table:N   --tolerance EPS   0: exact\n"
     "      --channels LIST     error: its bound; depth,normal; cells; with extinction or emission also radiance,\n"
     "                          optical_depth,transmittance,path_length; with --blend: value; .exr and .tif\n"

@@ -116,6 +116,8 @@ const RenderRow render_table[OPTION_COUNT] = {
                          .form = "expected error, or depth, normal, or value, or of radiance, optical_depth, "
                                  "transmittance, path_length some; "
                                  "and cells"},
+    [OPTION_DEEP] = {"deep", KIND_OPTIONAL, AT(deep), .only = COMMAND_RENDER,
+                     .form = "expected nothing, or a whole number from 1 to 1024"},
     [OPTION_TRAVERSAL] = {"traversal", KIND_CHOICE, AT(traversal), .names = traversals,
                           .form = "expected shell or faces"},
     [OPTION_ISA] = {"isa", KIND_CHOICE, AT(isa), .names = isas, .form = "expected auto, scalar, avx2 or avx512"},
@@ -317,6 +319,17 @@ uint32_t render_option_channels(const char *text) {
   return channels;
 }
 
+int render_option_deep(const char *text) {
+  double number = 32;
+  if (*text && !cli_parse_number(text, &number))
+    return 0;
+  return number >= 1 && number <= 1024 && number == floor(number) ? (int)number : 0;
+}
+
+int render_options_deep(const RenderOptions *options) {
+  return render_options_given(options, OPTION_DEEP) ? render_option_deep(options->deep) : 0;
+}
+
 bool render_options_groups(const RenderOptions *options) {
   return render_options_given(options, OPTION_GROUPS) && options->groups;
 }
@@ -473,6 +486,8 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
     TetcastBoundary boundary;
     double color[3];
     if (id == OPTION_SURFACE && !surfaces_parse_boundary(value->text, &boundary))
+      return render_table[id].form;
+    if (id == OPTION_DEEP && !render_option_deep(value->text))
       return render_table[id].form;
     if ((id == OPTION_EDGES || id == OPTION_OUTLINE) && *value->text && !surfaces_parse_color(value->text, color))
       return render_table[id].form;

@@ -55,6 +55,7 @@ typedef enum OptionId {
   OPTION_INTEGRATOR,
   OPTION_TOLERANCE,
   OPTION_CHANNELS,
+  OPTION_DEEP,
   OPTION_TRAVERSAL,
   OPTION_ISA,
   OPTION_THREADS,
@@ -86,7 +87,7 @@ typedef struct RenderOptions {
   RenderCommand command;
   /* NULL unless given */
   char *input, *output, *array, *block, *time, *transfer, *preset, *extinction, *emission, *integrator, *channels,
-      *surface, *edges, *outline, *stats, *scene, *save_scene, *stop_depth;
+      *surface, *edges, *outline, *deep, *stats, *scene, *save_scene, *stop_depth;
   char **inputs; /* [input_count] of several files, the steps of a series; input is the first. NULL: one file */
   int input_count;
   json_t *transfer_object; /* of a scene file; instead of transfer */
@@ -170,6 +171,12 @@ static inline bool render_options_surfaces(const RenderOptions *options) {
 static inline bool render_options_surfaces_alone(const RenderOptions *options) {
   return render_options_surfaces(options) && !render_options_given(options, OPTION_TRANSFER);
 }
+
+/* How many parts the rays of a deep picture have; 0: it is none. */
+int render_options_deep(const RenderOptions *options);
+
+/* The number of parts that a text says, 32 where it is empty; 0: it says none. */
+int render_option_deep(const char *text);
 
 /* Whether rays are cast only where the picture has something to show. */
 static inline bool render_options_adaptive(const RenderOptions *options) {

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <tetcast/image.h>
 #include <tetcast/transfer_function.h>
 
 #include "cli.h"
@@ -86,11 +87,33 @@ static const char *find_mixture(const RenderOptions *options) {
   return NULL;
 }
 
+/* What can't be with a deep picture. NULL: nothing. */
+static const char *find_flat(const RenderOptions *options) {
+  if (!render_options_deep(options))
+    return NULL;
+  if (!options->output || !render_option_has_extension(options->output, ".exr"))
+    return "--deep: only .exr holds deep pictures";
+  if (options->pixel_type != TETCAST_PIXEL_DEFAULT && options->pixel_type != TETCAST_PIXEL_HALF &&
+      options->pixel_type != TETCAST_PIXEL_FLOAT)
+    return "--deep: needs --pixel-type float or half";
+  if (render_options_channels(options))
+    return "--channels, --groups: not possible with --deep";
+  if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
+    return "--deep: needs --blend composite";
+  if (options->integrator && strcmp(options->integrator, "exact"))
+    return "--integrator: with --deep there is only exact";
+  if (render_options_adaptive(options) || (render_options_given(options, OPTION_SAMPLES) && options->samples > 1))
+    return "--deep: needs one ray per pixel, without --samples and --adaptive";
+  return render_options_given(options, OPTION_OUTLINE) ? "--outline: not possible with --deep" : NULL;
+}
+
 /* What is wrong with options that are in order one by one (for free()), NULL: nothing. */
 static char *find_fault(const RenderOptions *options) {
   const char *view = view_fault(options);
   if (!view)
     view = find_mixture(options);
+  if (!view)
+    view = find_flat(options);
   if (view)
     return cli_duplicate(view);
   TetcastIntegrator integrator = TETCAST_INTEGRATOR_EXACT;
@@ -177,6 +200,7 @@ static const char *take_optional(OptionId id, int argc, char **argv) {
   if (optind >= argc)
     return "";
   const bool fits = id == OPTION_SURFACE ? surfaces_parse_boundary(argv[optind], &boundary)
+                    : id == OPTION_DEEP  ? *argv[optind] && render_option_deep(argv[optind])
                                          : surfaces_parse_color(argv[optind], color);
   return fits ? argv[optind++] : "";
 }

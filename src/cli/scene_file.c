@@ -307,6 +307,8 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
     json_object_set_new(scene, "integrator", json_string(options->integrator));
   if (options->tolerance > 0)
     json_object_set_new(scene, "tolerance", json_real(options->tolerance));
+  if (render_options_deep(options))
+    json_object_set_new(scene, "deep", json_string(options->deep));
   if (options->channels)
     json_object_set_new(scene, "channels", json_string(options->channels));
   json_object_set_new(scene, "traversal", json_string(render_option_choice(OPTION_TRAVERSAL, options->traversal)));

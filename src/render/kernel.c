@@ -421,6 +421,8 @@ static void place_rays(const TcJob *job, const TcGround *ground, const TcWide *s
     tc_slice(job->surfaces, placed);
   if (stop)
     tc_stop(stop, radius, job->interval_error, placed);
+  if (job->start)
+    placed->doubt += tc_set_wide(job->interval_error);
   left_out &= ~placed->lanes;
   for (; TC_UNLIKELY(job->coefficients != NULL) && left_out; left_out &= left_out - 1) {
     double *of_ray = sums + PIXEL_OF(placed->destination[__builtin_ctz(left_out)]) * job->sums;
@@ -444,15 +446,24 @@ typedef struct Tile {
   double *sums;
 } Tile;
 
-/* The distances at which the rays through places of the grid of samples stop, scaled. */
-TC_NOINLINE void find_stops(const TcJob *job, const TcWide *column, const TcWide *row, unsigned lanes, TcWide *stop) {
-  *stop = tc_set_wide(0);
+/* The distances of `of` for the rays through places of the grid of samples, scaled. */
+TC_NOINLINE void find_distances(const TcJob *job, const TetcastArray *of, const TcWide *column, const TcWide *row,
+                                unsigned lanes, TcWide *result) {
+  *result = tc_set_wide(0);
   for (; lanes; lanes &= lanes - 1) {
     const int l = __builtin_ctz(lanes);
     const int64_t x = (int64_t)TC_AT(*column, l) / job->samples_x, y = (int64_t)TC_AT(*row, l) / job->samples_y;
-    const double distance = tc_array_double(job->stop, tc_array_stride(job->stop, 1), y * job->width + x, 0);
-    TC_AT(*stop, l) = ldexp(distance, -job->shell->volume->exponent);
+    const double distance = tc_array_double(of, tc_array_stride(of, 1), y * job->width + x, 0);
+    TC_AT(*result, l) = ldexp(distance, -job->shell->volume->exponent);
   }
+}
+
+/* Has the rays through places of the grid of samples count from where the job says. */
+TC_NOINLINE void begin_at_start(const TcJob *job, const TcWide *column, const TcWide *row, TcPlaced *placed) {
+  TcWide *begin = &placed->lines.begin;
+  find_distances(job, job->start, column, row, placed->lanes, begin);
+  for (int l = 0; l < TC_LANES; ++l)
+    TC_AT(*begin, l) = TC_AT(*begin, l) > 0 ? TC_AT(*begin, l) : 0;
 }
 
 /* Places the rays through one point of the grid of samples in each lane. */
@@ -472,7 +483,9 @@ static void place_samples(const TcJob *job, const TcGround *ground, const TcWide
   tc_view_lines(&job->view, &u, &v, lines);
   TcWide stop;
   if (job->stop)
-    find_stops(job, column, row, placed->lanes, &stop);
+    find_distances(job, job->stop, column, row, placed->lanes, &stop);
+  if (job->start)
+    begin_at_start(job, column, row, placed);
   place_rays(job, ground, job->stop ? &stop : NULL, sums, placed);
 }
 

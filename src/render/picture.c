@@ -418,6 +418,7 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   job->clip = scene->clip;
   job->clip_count = scene->clip_count;
   job->stop = desc->stop;
+  job->start = desc->start;
   job->to_the_end =
       tc_frame_channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH) || tc_frame_channel(frame, TETCAST_CHANNEL_PATH_LENGTH);
   tc_job_of_scene(scene, measured, job);

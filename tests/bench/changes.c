@@ -125,6 +125,7 @@ typedef struct Feature {
   TetcastBlend blend;
   int planes;      /* 1: clipped to `oblique` */
   int edges;       /* 1: an outline, and the boundary's triangles; 2: the boundary without its triangles */
+  bool part;       /* only the middle of rays counts */
   double adaptive; /* rays are cast where pixels differ by so much, from every fourth pixel on; 0: everywhere */
 } Feature;
 
@@ -163,6 +164,17 @@ static TetcastField *make_field(Tet *tet, const BenchMesh *mesh, int values, dou
   return field;
 }
 
+/* The distances [2][pixels] between which rays are near the middle of what the camera sees. */
+static double *middle_of_rays(const TetcastCamera *camera, int64_t pixels) {
+  double *ends = calloc((size_t)(2 * pixels), sizeof *ends), square = 0;
+  must(ends != NULL, "no memory");
+  for (int k = 0; k < 3; k++)
+    square += (camera->target[k] - camera->eye[k]) * (camera->target[k] - camera->eye[k]);
+  for (int64_t i = 0; i < 2 * pixels; i++)
+    ends[i] = sqrt(square) + (i < pixels ? -0.1 : 0.1);
+  return ends;
+}
+
 void job_features(const Job *job) {
   Transfer colors = transfer_linear, knots = transfer_soft, clear = transfer_linear;
   for (int i = 0; i < clear.opacity_count; i++)
@@ -192,6 +204,7 @@ void job_features(const Job *job) {
       {.name = "3 opaque lit isosurfaces alone", .transfer = &clear, .isosurfaces = 3},
       {.name = "3 lit isosurfaces in the volume", .transfer = &transfer_linear, .isosurfaces = -3},
       {.name = "adaptive to 0.01 from 4th pixels on", .transfer = &transfer_linear, .adaptive = 0.01},
+      {.name = "a part of each ray", .transfer = &transfer_linear, .part = true},
       {.name = "boundary", .transfer = &clear, .edges = 2},
       {.name = "boundary with edges and an outline", .transfer = &clear, .edges = 1},
       {.name = "channel of depth", .transfer = &transfer_linear, .channels = TETCAST_CHANNEL_DEPTH},
@@ -211,6 +224,10 @@ void job_features(const Job *job) {
     fields[i] = make_field(&tet, job->mesh, i, memory);
   }
   free(memory);
+  const int64_t pixels = (int64_t)job->options->pixels * job->options->pixels;
+  double *ends = middle_of_rays(&camera, pixels);
+  const TetcastArray from = {ends, TETCAST_TYPE_FLOAT64, pixels, 0},
+                     to = {ends + pixels, TETCAST_TYPE_FLOAT64, pixels, 0};
   const int count = sizeof features / sizeof *features;
   for (int round = 0; round < job->scene->rounds; round++) {
     for (int i = 0; i < count; i++) {
@@ -225,6 +242,8 @@ void job_features(const Job *job) {
       desc.samples = feature->samples > 0 ? feature->samples : 1;
       desc.adaptive_epsilon = feature->adaptive;
       desc.adaptive_coarse = feature->adaptive > 0 ? 4 : 0;
+      desc.start = feature->part ? &from : NULL;
+      desc.stop = feature->part ? &to : NULL;
       const TetcastType type = feature->type ? feature->type : TETCAST_TYPE_FLOAT64;
       TetcastFrame *frame = tet_frame(&tet, job->options->pixels, type, feature->channels);
       tet_render(&tet, &camera, NULL, frame, NULL);
@@ -245,6 +264,7 @@ void job_features(const Job *job) {
     row.crossed = features[i].stats.segments;
     row_write(&row);
   }
+  free(ends);
   for (int i = 0; i < 3; i++) {
     tetcast_field_destroy(&fields[i]);
   }

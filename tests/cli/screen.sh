@@ -83,4 +83,34 @@ accept render --scene edges.json -o again.png
 same again.png edges.png 'scene with edges'
 refuse 2 'needs --surface' render cube.vtu --edges
 refuse 2 'expected nothing, or a colour' render cube.vtu --surface --edges=0.5
+
+# ── deep pictures ──
+
+accept render cube.vtu -o deep.exr $view --deep --save-scene deep.json
+accept render --scene deep.json -o again.exr
+same again.exr deep.exr 'scene of a deep picture'
+accept render cube.vtu -o other.exr $view --deep 32 # the next word
+same other.exr deep.exr 'the number by default'
+accept render --deep=3 cube.vtu $view -o three.exr --threads 1
+accept render --deep=3 cube.vtu $view -o other.exr --threads 3
+same other.exr three.exr threads
+differ deep.exr three.exr 'the number of parts'
+accept render cube.vtu -o half.exr $view --deep 3 --pixel-type half
+differ half.exr three.exr 'type of pixels'
+accept render cube.vtu -o emission.exr --eye 3,2,5 --size 9x9 --emission s --extinction s --deep 3
+cp cube.vtu step_1.vtu
+cp cube.vtu step_2.vtu
+accept render step_1.vtu step_2.vtu -o 'step.##.exr' $view --deep 3 --range 0,6
+same step.00.exr step.01.exr 'steps of a series'
+refuse 2 'only .exr' render cube.vtu -o a.png --array s --deep
+refuse 2 'float or half' render cube.vtu -o a.exr --array s --deep --pixel-type double
+refuse 2 'not possible with --deep' render cube.vtu -o a.exr --array s --deep --channels depth
+refuse 2 'needs --blend composite' render cube.vtu -o a.exr --array s --deep --blend maximum
+refuse 2 'there is only exact' render cube.vtu -o a.exr --array s --deep --integrator gauss:2
+refuse 2 'one ray per pixel' render cube.vtu -o a.exr --array s --deep --samples 4
+refuse 2 'one ray per pixel' render cube.vtu -o a.exr --array s --deep --adaptive 0.1
+refuse 2 '--outline: not possible' render cube.vtu -o a.exr --array s --deep --outline
+for text in x 0 1025 2.5; do
+  refuse 2 'expected nothing, or a whole number' render cube.vtu -o a.exr --deep=$text
+done
 finish

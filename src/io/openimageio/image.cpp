@@ -7,22 +7,23 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
-#include <new>
 #include <sstream>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include <OpenImageIO/imageio.h>
 
+#include "failure.hpp"
 #include "io/floating.hpp"
 #include "output.hpp"
 
 using OIIO::ImageOutput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
+using tetcast::error_text;
+using tetcast::fail;
 
 namespace {
 
@@ -70,27 +71,6 @@ std::vector<Extra> extras_of(const TetcastFrame *frame, const TetcastImageDesc *
       if (!listed || info->channel == desc->channels[k])
         add_extra(frame, *info, extras);
   return extras;
-}
-
-// One error, already sent to the context.
-struct Failure {
-  TetcastStatus status;
-};
-
-[[noreturn]] void fail(TetcastContext *context, TetcastStatus status, const char *path, const std::string &reason) {
-  tetcast_context_error(context, status, "cannot write image '%s': %s", path, reason.c_str());
-  throw Failure{status};
-}
-
-std::string error_text(int error) {
-  switch (error) {
-  case ENOENT:
-    return "its folder does not exist";
-  case EINVAL:
-    return "it exists and is not a regular file";
-  default:
-    return std::strerror(error);
-  }
 }
 
 std::string extension_of(const std::string &path) {
@@ -434,23 +414,7 @@ TetcastStatus guarded(TetcastContext *context, const char *path, const Pixels &p
   for (double value : desc.background)
     if (!(value >= 0 && value <= 1))
       return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "background component %g is outside [0, 1]", value);
-  try {
-    write_picture(context, path, pixels, desc, publish);
-    return TETCAST_OK;
-  } catch (const Failure &failure) {
-    return failure.status;
-  } catch (const std::bad_alloc &) {
-    return tetcast_context_error(context, TETCAST_ERROR_MEMORY, "cannot write image '%s': out of memory", path);
-  } catch (const std::system_error &error) {
-    const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
-    return tetcast_context_error(
-        context, TETCAST_ERROR_IO, "cannot write image '%s': %s%s", path, error.what(),
-        no_thread ? ": OpenImageIO needs a thread of its own for this format; .png and .jpg don't" : "");
-  } catch (const std::exception &error) {
-    return tetcast_context_error(context, TETCAST_ERROR_IO, "cannot write image '%s': %s", path, error.what());
-  } catch (...) {
-    return tetcast_context_error(context, TETCAST_ERROR_IO, "cannot write image '%s': unknown failure", path);
-  }
+  return tetcast::guard_writing(context, path, [&] { write_picture(context, path, pixels, desc, publish); });
 }
 
 } // namespace
