@@ -24,9 +24,8 @@ typedef struct Run {
   bool image_pending; /* image_thread still has to be waited for */
   Stage stage;
   TetcastFrame *frame;
-  TetcastFrame *values; /* the same pixels with their values, where colours follow from them; NULL: they don't */
-  Deep deep;            /* of a deep picture; else zeros */
-  RunStats stats;       /* of the last picture */
+  Deep deep;      /* of a deep picture; else zeros */
+  RunStats stats; /* of the last picture */
 } Run;
 
 /* Each step returns an exit code. */

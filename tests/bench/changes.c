@@ -175,6 +175,32 @@ static double *middle_of_rays(const TetcastCamera *camera, int64_t pixels) {
   return ends;
 }
 
+/* Measures a picture of one feature, once more. `ends`: those of middle_of_rays(). */
+static void measure_feature(const Job *job, Tet *tet, Feature *feature, TetcastField *const fields[3],
+                            const double *ends) {
+  const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
+  const int64_t pixels = (int64_t)job->options->pixels * job->options->pixels;
+  const TetcastArray from = {ends, TETCAST_TYPE_FLOAT64, pixels, 0},
+                     to = {ends + pixels, TETCAST_TYPE_FLOAT64, pixels, 0};
+  must(tetcast_scene_set_field(tet->scene, fields[feature->values]) == TETCAST_OK, "set field");
+  tet_transfer(tet, feature->transfer);
+  set_isosurfaces(tet, feature->isosurfaces);
+  must(tetcast_scene_set_blend(tet->scene, feature->blend) == TETCAST_OK, "set blend");
+  must(tetcast_scene_set_clip(tet->scene, &oblique, feature->planes) == TETCAST_OK, "set clip");
+  set_lines(tet, feature->edges);
+  TetcastRenderDesc desc = tetcast_render_desc_default();
+  desc.samples = feature->samples > 0 ? feature->samples : 1;
+  desc.adaptive_epsilon = feature->adaptive;
+  desc.adaptive_coarse = feature->adaptive > 0 ? 4 : 0;
+  desc.start = feature->part ? &from : NULL;
+  desc.stop = feature->part ? &to : NULL;
+  const TetcastType type = feature->type ? feature->type : TETCAST_TYPE_FLOAT64;
+  TetcastFrame *frame = tet_frame(tet, job->options->pixels, type, feature->channels);
+  tet_render(tet, &camera, NULL, frame, NULL);
+  times_add(&feature->times, measure_frame(job, tet, &camera, &desc, frame, &feature->stats));
+  tetcast_frame_destroy(&frame);
+}
+
 void job_features(const Job *job) {
   Transfer colors = transfer_linear, knots = transfer_soft, clear = transfer_linear;
   for (int i = 0; i < clear.opacity_count; i++)
@@ -224,31 +250,11 @@ void job_features(const Job *job) {
     fields[i] = make_field(&tet, job->mesh, i, memory);
   }
   free(memory);
-  const int64_t pixels = (int64_t)job->options->pixels * job->options->pixels;
-  double *ends = middle_of_rays(&camera, pixels);
-  const TetcastArray from = {ends, TETCAST_TYPE_FLOAT64, pixels, 0},
-                     to = {ends + pixels, TETCAST_TYPE_FLOAT64, pixels, 0};
+  double *ends = middle_of_rays(&camera, (int64_t)job->options->pixels * job->options->pixels);
   const int count = sizeof features / sizeof *features;
   for (int round = 0; round < job->scene->rounds; round++) {
     for (int i = 0; i < count; i++) {
-      Feature *feature = &features[i];
-      must(tetcast_scene_set_field(tet.scene, fields[feature->values]) == TETCAST_OK, "set field");
-      tet_transfer(&tet, feature->transfer);
-      set_isosurfaces(&tet, feature->isosurfaces);
-      must(tetcast_scene_set_blend(tet.scene, feature->blend) == TETCAST_OK, "set blend");
-      must(tetcast_scene_set_clip(tet.scene, &oblique, feature->planes) == TETCAST_OK, "set clip");
-      set_lines(&tet, feature->edges);
-      TetcastRenderDesc desc = tetcast_render_desc_default();
-      desc.samples = feature->samples > 0 ? feature->samples : 1;
-      desc.adaptive_epsilon = feature->adaptive;
-      desc.adaptive_coarse = feature->adaptive > 0 ? 4 : 0;
-      desc.start = feature->part ? &from : NULL;
-      desc.stop = feature->part ? &to : NULL;
-      const TetcastType type = feature->type ? feature->type : TETCAST_TYPE_FLOAT64;
-      TetcastFrame *frame = tet_frame(&tet, job->options->pixels, type, feature->channels);
-      tet_render(&tet, &camera, NULL, frame, NULL);
-      times_add(&feature->times, measure_frame(job, &tet, &camera, &desc, frame, &feature->stats));
-      tetcast_frame_destroy(&frame);
+      measure_feature(job, &tet, &features[i], fields, ends);
     }
   }
   Row row = job->row;

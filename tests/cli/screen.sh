@@ -49,6 +49,9 @@ accept render cube.vtu -o cells.exr $view --blend maximum --channels value,cells
 accept render cube.vtu -o cells.exr --eye 3,2,5 --extinction s --channels cells,transmittance
 accept render cube.vtu -o cells.exr $view --integrator gauss:2 --channels cells
 accept render cube.vtu -o normal.exr $view --slice 1,0,0,0.5 --channels normal
+accept render cube.vtu -o sums.exr $view --blend additive --channels value,cells --save-scene sums.json
+accept render --scene sums.json -o again.exr # whose range is not that of the picture any more
+same again.exr sums.exr 'channels of a picture in its own range'
 refuse 2 'error and normal' render cube.vtu -o a.exr --array s --channels normal,error
 refuse 2 'only the exact integrator' render cube.vtu -o a.exr --array s --integrator gauss:2 --channels cells,error
 refuse 2 'only value and cells' render cube.vtu -o a.exr --array s --blend maximum --channels normal
