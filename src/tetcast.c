@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "boundary.h"
+#include "base/boundary.h"
 #include "mesh/cut.h"
 #include "mesh/mesh.h"
 #include "optics/transfer.h"
@@ -679,12 +679,26 @@ TetcastStatus tetcast_scene_set_boundary(TetcastScene *scene, const TetcastBound
     return ARGUMENT(context, "boundary: an opacity of %g, must be in [0, 1]", boundary->opacity);
   if (boundary && boundary->colored && !is_color(boundary->color))
     return ARGUMENT(context, "boundary: a colour is negative or not finite");
+  if (boundary && boundary->edges && !is_color(boundary->edge_color))
+    return ARGUMENT(context, "boundary: the colour of edges is negative or not finite");
   if (boundary && boundary->opacity > 0 && scene->volume->traversal == TETCAST_TRAVERSAL_FACES)
     return ARGUMENT(context, "the mesh's boundary is seen by the traversal shell only");
   scene->boundary = boundary ? *boundary : (TetcastBoundary){.opacity = 0};
   if (!scene->boundary.colored)
     memset(scene->boundary.color, 0, sizeof scene->boundary.color);
   tc_scene_forget(scene);
+  return TETCAST_OK;
+}
+
+TetcastStatus tetcast_scene_set_outline(TetcastScene *scene, const double color[3]) {
+  TC_ENTRY;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
+  if (color && !is_color(color))
+    return ARGUMENT(scene->context, "outline: a colour is negative or not finite");
+  scene->outlined = color != NULL;
+  for (int k = 0; color && k < 3; ++k)
+    scene->outline_color[k] = color[k];
   return TETCAST_OK;
 }
 
@@ -815,7 +829,7 @@ int tetcast_scene_groups(const TetcastScene *scene) {
 }
 
 TetcastRenderDesc tetcast_render_desc_default(void) {
-  return (TetcastRenderDesc){.cookie = TC_COOKIE, .integrator_n = 1, .samples = 1};
+  return (TetcastRenderDesc){.cookie = TC_COOKIE, .integrator_n = 1, .samples = 1, .adaptive_fine = 1};
 }
 
 static TetcastStatus check_camera(TetcastContext *context, const TetcastCamera *camera) {
@@ -863,6 +877,8 @@ static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderD
       return ARGUMENT(context, "a frame of %d groups, but the scene has %d", frame->groups, c->groups);
     }
   }
+  if (scene->outlined && tc_frame_channel(frame, TETCAST_CHANNEL_VALUE))
+    return ARGUMENT(context, "with an outline there is no channel value, by which pictures are coloured anew");
   if (c && scene->blend)
     return ARGUMENT(context, "with coefficients there is only the blend mode composite");
   if (scene->blend && !exact)
@@ -918,20 +934,45 @@ static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderD
 }
 
 /* Whether the rays' ends are those of the frame's pixels. */
-static TetcastStatus check_stop(TetcastContext *context, const TetcastArray *stop, const TetcastFrame *frame) {
+static TetcastStatus check_stop(TetcastContext *context, const TetcastArray *stop, const char *name,
+                                const TetcastFrame *frame) {
   if (!tc_type_is_float(stop->type))
-    return ARGUMENT(context, "stop: the type must be float32 or float64");
+    return ARGUMENT(context, "%s: the type must be float32 or float64", name);
   if (stop->count != frame->width * frame->height) {
-    return ARGUMENT(context, "stop: %" PRId64 " distances for a frame of %" PRId64 " × %" PRId64 " pixels", stop->count,
-                    frame->width, frame->height);
+    return ARGUMENT(context, "%s: %" PRId64 " distances for a frame of %" PRId64 " × %" PRId64 " pixels", name,
+                    stop->count, frame->width, frame->height);
   }
   CHECK_GIVEN(context, stop->data);
   const int64_t stride = tc_array_stride(stop, 1);
   for (int64_t i = 0; i < stop->count; ++i) {
     if (isnan(tc_array_double(stop, stride, i, 0))) {
-      return ARGUMENT(context, "stop: the distance of pixel (%" PRId64 ", %" PRId64 ") is NaN", i % frame->width,
+      return ARGUMENT(context, "%s: the distance of pixel (%" PRId64 ", %" PRId64 ") is NaN", name, i % frame->width,
                       i / frame->width);
     }
+  }
+  return TETCAST_OK;
+}
+
+/* Whether the picture can be one of few rays, if it is to be. */
+static TetcastStatus check_adaptive(const TetcastScene *scene, const TetcastRenderDesc *desc,
+                                    const TetcastFrame *frame) {
+  TetcastContext *context = scene->context;
+  const int coarse = desc->adaptive_coarse;
+  if (coarse == 0)
+    return TETCAST_OK;
+  if (coarse < 0 || coarse > 64 || (coarse & (coarse - 1)))
+    return ARGUMENT(context, "adaptive: a ray at every %d pixels, must be a power of two up to 64", coarse);
+  if (!(desc->adaptive_epsilon >= 0) || !isfinite(desc->adaptive_epsilon))
+    return ARGUMENT(context, "adaptive: an epsilon of %g, must be 0 or a positive number", desc->adaptive_epsilon);
+  if (desc->adaptive_fine < 1 || desc->adaptive_fine > 65536)
+    return ARGUMENT(context, "adaptive: %d samples in fine pixels, must be in [1, 65536]", desc->adaptive_fine);
+  if (desc->samples != 1)
+    return ARGUMENT(context, "adaptive: not possible with %d samples", desc->samples);
+  if (scene->blend)
+    return ARGUMENT(context, "adaptive: only possible in the blend mode composite");
+  for (int i = 0; i < TC_CHANNELS; ++i) {
+    if (frame->channel[i])
+      return ARGUMENT(context, "adaptive: the channel %s can't be interpolated", tc_channels[i].info.name);
   }
   return TETCAST_OK;
 }
@@ -977,9 +1018,13 @@ TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamer
   }
   TetcastStatus status = check_scene(scene, desc, frame);
   if (!status)
+    status = check_adaptive(scene, desc, frame);
+  if (!status)
     status = check_camera(context, camera);
   if (!status && desc->stop)
-    status = check_stop(context, desc->stop, frame);
+    status = check_stop(context, desc->stop, "stop", frame);
+  if (!status && desc->start)
+    status = check_stop(context, desc->start, "start", frame);
   SceneRender call = {scene, camera, *desc, frame, stats};
   return status ? status : tc_call(scene_render, &call, &call.desc.progress);
 }

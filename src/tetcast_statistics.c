@@ -3,7 +3,7 @@
 #include <inttypes.h>
 #include <math.h>
 
-#include "boundary.h"
+#include "base/boundary.h"
 #include "mesh/mesh.h"
 #include "volume/statistics.h"
 

@@ -44,7 +44,18 @@ typedef enum TetcastChannel {
    * which the ray meets the first surface whose opacity is at least 1/2, whichever comes first, in the mesh's unit of
    * length: from the eye, or, of an orthographic camera, from the plane through it. Infinite where neither is; of
    * several samples the mean of those where it is not. Not together with TETCAST_CHANNEL_ERROR. */
-  TETCAST_CHANNEL_DEPTH = 64
+  TETCAST_CHANNEL_DEPTH = 64,
+
+  /* How many of the mesh's cells the ray crosses over a length above 0, from where it starts, or is clipped to, to
+   * where it stops, whatever hides them: also cells that nothing is seen of. Of several samples the mean. Counted on a
+   * walk of its own, so that the picture is the same without. */
+  TETCAST_CHANNEL_CELLS = 128,
+
+  /* Three values, of scenes as with TETCAST_CHANNEL_DEPTH: where that is the depth of a surface, the surface's normal
+   * there, a unit vector in the mesh's coordinates towards the eye: an isosurface's as the shading desc says, whether
+   * light falls on it or not. 0, 0, 0 where it is the depth of the volume, or infinite. Of several samples the
+   * direction of the sum. */
+  TETCAST_CHANNEL_NORMAL = 256
 } TetcastChannel;
 
 /* The most groups that coefficients may have. */
@@ -79,11 +90,13 @@ typedef struct TetcastChannelInfo {
   /* The name by which the command calls it. In static storage, never NULL. */
   const char *name;
   /* The name that it has in picture files, as users of OpenEXR expect it, with a number behind it for each of several
-   * groups. In static storage, never NULL. */
+   * groups, or ".X", ".Y", ".Z" for three components. In static storage, never NULL. */
   const char *file_name;
   /* A sentence that says what it is. In static storage, never NULL. */
   const char *description;
-  /* Not 0 if it has a value for each group, 0 if it has one. */
+  /* How many values it has for a pixel: 1, or 3 for a vector; 0 if it has one for each group. */
+  int components;
+  /* Not 0 if it has a value for each group. */
   int of_groups;
   /* Not 0 if only scenes with coefficients have it. */
   int needs_coefficients;
@@ -125,8 +138,8 @@ TETCAST_API int64_t tetcast_frame_row_stride(const TetcastFrame *frame);
 TETCAST_API int tetcast_frame_groups(const TetcastFrame *frame);
 
 /* The values of one channel, valid while the frame lives: [height][width] of the frame's type, or
- * [height][width][groups] for a channel that has a value for each group, rows next to each other. NULL if the frame was
- * made without it. */
+ * [height][width][groups] for a channel that has a value for each group, or [height][width][3] for a vector, rows next
+ * to each other. NULL if the frame was made without it. */
 TETCAST_API const void *tetcast_frame_channel(const TetcastFrame *frame, TetcastChannel channel);
 
 /* Colours the pixels of a picture in a blend mode anew, without rendering. A pixel's colour becomes the transfer

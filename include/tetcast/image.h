@@ -38,6 +38,11 @@ typedef struct TetcastImageDesc {
   double background[4];
   /* Not 0: only the frame's channels are written, without red, green, blue and alpha; it must have some. Default: 0. */
   int channels_only;
+  /* [channel_count]: the frame's channels that are written, in this order, none twice. NULL (the default): all of them,
+   * in the order of tetcast_channel_info(). EXR knows channels by their names alone. */
+  const TetcastChannel *channels;
+  /* The number of `channels`. Default: 0. */
+  int channel_count;
 } TetcastImageDesc;
 
 /* Makes a desc with every setting at its default. */
@@ -49,9 +54,8 @@ TETCAST_API TetcastImageDesc tetcast_image_desc_default(void);
  * background, integer formats with alpha hold unassociated colour; .webp takes none. What a format or type can't hold,
  * such as 70000 as half or a negative colour in .hdr, is TETCAST_ERROR_ARGUMENT; beyond the range of a float it is
  * infinite. A frame's channels follow the four in .exr and .tif with floating-point pixels (float beside half in .exr),
- * in this order and in EXR by these names: "radiance", "optical_depth", "transmittance", "path_length", "error"; of
- * several groups "radiance.00", "radiance.01" …, as many digits as the last needs. What can't hold them:
- * TETCAST_ERROR_ARGUMENT.
+ * in EXR by their file names (TetcastChannelInfo); of several groups "radiance.00", "radiance.01" …, as many digits as
+ * the last needs. What can't hold them: TETCAST_ERROR_ARGUMENT.
  *
  * The file appears whole or not at all; one that is replaced keeps its mode, and a symbolic link is followed. While it
  * is written it is a hidden file beside its place, .tetcast-PROCESS-NUMBER with the same extension, under a lock
@@ -60,6 +64,33 @@ TETCAST_API TetcastImageDesc tetcast_image_desc_default(void);
  * is often built with OpenVDB, whose logger insists on threads when it is loaded). */
 TETCAST_API TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, const TetcastFrame *frame,
                                               const TetcastImageDesc *desc);
+
+/* A deep picture: of each pixel's ray the light of parts that follow each other, so that other deep pictures can be
+ * composited into it. It is plain memory of the caller's. The parts are equally long: part i of n goes from the
+ * distance begin + (end − begin) i/n to begin + (end − begin) (i + 1)/n, and what is in it counts as spread evenly, as
+ * OpenEXR has it for a sample with two depths. */
+typedef struct TetcastDeep {
+  /* The number of pixels in a row, in [1, 2^20]. */
+  int64_t width;
+  /* The number of rows, in [1, 2^20]. */
+  int64_t height;
+  /* The number of parts, above 0. */
+  int layer_count;
+  /* [layer_count][height][width][4]: red, green, blue and alpha of each part by itself, premultiplied, rows from the
+   * top: what tetcast_scene_render() makes with the part's ends as `start` and `stop` of its desc. */
+  const float *const *layers;
+  /* [height][width]: the distance at which the first part begins, as TetcastRenderDesc.start has it. */
+  const double *begin;
+  /* [height][width]: the distance at which the last part ends, at least that of `begin`. */
+  const double *end;
+} TetcastDeep;
+
+/* Writes a deep picture to an .exr file, with the channels R, G, B, A, Z and ZBack. Each pixel has a sample for each of
+ * its parts that shows anything. Composited front to back, they give the whole picture. `pixel_type`: of R, G, B and A,
+ * TETCAST_PIXEL_HALF, or float with TETCAST_PIXEL_FLOAT and TETCAST_PIXEL_DEFAULT; others, other formats and missing
+ * arrays are TETCAST_ERROR_ARGUMENT. The rest is as with tetcast_image_write(). */
+TETCAST_API TetcastStatus tetcast_image_write_deep(TetcastContext *context, const char *path, const TetcastDeep *deep,
+                                                   TetcastPixelType pixel_type);
 
 /* Checks whether `path` could be written with `desc` (NULL: default): that its extension is known, that the format can
  * hold the pixel type, and that its folder exists and can be written to. To be asked before long work; messages are

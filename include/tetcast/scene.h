@@ -113,6 +113,13 @@ TETCAST_API TetcastStatus tetcast_scene_set_slices(TetcastScene *scene, const Te
  * no boundary, it is TETCAST_ERROR_ARGUMENT. Must not run while this scene renders. */
 TETCAST_API TetcastStatus tetcast_scene_set_boundary(TetcastScene *scene, const TetcastBoundary *boundary);
 
+/* Draws the edges of the mesh's bounding box into pictures, about a pixel wide, in this colour: red, green and blue,
+ * not premultiplied, each at least 0 and finite. NULL: they aren't drawn, as in a new scene. They are composited where
+ * they are: those of the box's faces that are seen from outside lie before all of the mesh, others behind it; what
+ * TetcastRenderDesc.stop hides is not drawn. Channels don't know of them, and a frame with TETCAST_CHANNEL_VALUE, which
+ * can be coloured anew, has none (TETCAST_ERROR_ARGUMENT when rendering). Must not run while this scene renders. */
+TETCAST_API TetcastStatus tetcast_scene_set_outline(TetcastScene *scene, const double color[3]);
+
 /* Sets the light; `desc` may be NULL: as a new scene has it, the default. Must not run while this scene renders. On
  * error the scene keeps what it had. */
 TETCAST_API TetcastStatus tetcast_scene_set_shading(TetcastScene *scene, const TetcastShadingDesc *desc);
@@ -195,6 +202,24 @@ typedef struct TetcastRenderDesc {
    * it, along the ray, not along the direction of view. So a picture is made that goes in front of opaque things of
    * other origin. Infinity: the ray doesn't end; 0 or less: it sees nothing; NaN is TETCAST_ERROR_ARGUMENT. */
   const TetcastArray *stop;
+  /* As `stop`: the distance from which on a ray sees anything; 0 or less: all of it. NULL (default): all rays see all.
+   * So pictures are made of parts of rays, which composited front to back give the whole. What is met exactly where one
+   * part ends and the next begins is in one of them, but for the boundary's faces, which may be in both. */
+  const TetcastArray *start;
+  /* Above 0, a power of two up to 64: rays are cast where the picture has something to show, not through every pixel
+   * (Levoy 1990). First there is one at every so many pixels, in both directions; a square between four of them is cut
+   * into four, and so on down to single pixels, unless all four channels of its corners differ by less than
+   * adaptive_epsilon; the pixels between corners are interpolated. A pixel that a ray was cast through is as exact as
+   * without, but what lies between corners may be missed: there is no bound on the error. Default: 0, every pixel. Not
+   * with several samples, channels, or a blend mode other than composite (TETCAST_ERROR_ARGUMENT). */
+  int adaptive_coarse;
+  /* With adaptive_coarse, finite and ≥ 0, in the units of the channels, colours premultiplied. 0 (the default): no
+   * square is left whole, and the picture is, to the bit, the one without adaptive_coarse and with adaptive_fine
+   * samples. */
+  double adaptive_epsilon;
+  /* With adaptive_coarse, in [1, 2^16]: how many rays, on a grid as with `samples`, are cast through a pixel that
+   * differs by adaptive_epsilon or more from one of its four neighbours. Default: 1, none but the first. */
+  int adaptive_fine;
   /* Called while the picture is made (context.h). Default: not called. */
   TetcastProgress progress;
 } TetcastRenderDesc;
@@ -204,12 +229,13 @@ TETCAST_API TetcastRenderDesc tetcast_render_desc_default(void);
 
 /* What was done to make a picture. */
 typedef struct TetcastRenderStats {
-  /* The number of rays cast: width × height × samples. */
+  /* The number of rays cast: width × height × samples, or with adaptive_coarse how many there were. */
   int64_t rays;
   /* The number of cells crossed over a length > 0, summed over the rays. */
   int64_t segments;
   /* The largest of the pixels' error bounds (TETCAST_CHANNEL_ERROR), ≥ 0. NaN with an integrator other than the exact
-   * one, with a blend mode other than composite, and where neither that channel nor a tolerance was asked for. */
+   * one, with a blend mode other than composite, with adaptive_coarse, and where neither that channel nor a tolerance
+   * was asked for. */
   double error;
   /* The number of rays whose walk ended before the boundary. Anything but 0 is a defect of tetcast. */
   int64_t lost;

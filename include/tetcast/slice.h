@@ -29,6 +29,11 @@ typedef struct TetcastBoundary {
   int colored;
   /* Red, green and blue, each at least 0 and finite, not premultiplied; used if `colored` says so. */
   double color[3];
+  /* Not 0: the edges of its triangles are drawn on it, about a pixel wide, from either side. */
+  int edges;
+  /* Red, green and blue of these, each at least 0 and finite, not premultiplied; no light falls on them. Used if
+   * `edges` says so. */
+  double edge_color[3];
 } TetcastBoundary;
 
 #ifdef __cplusplus

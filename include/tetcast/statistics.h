@@ -40,15 +40,22 @@ TETCAST_API TetcastStatisticsDesc tetcast_statistics_desc_default(void);
  * these, so that nothing is sampled, and what they are off by is rounding alone. Volumes are in the mesh's unit of
  * length to the third power, areas to the second. A field of cells is constant in each, and has no isosurfaces. */
 typedef struct TetcastStatistics {
-  /* What was counted, defaults filled in. */
+  /* The values that were told apart, the default filled in. */
   double range[2];
+  /* Into how many bins. */
   int bins;
+  /* The magnitudes of the gradient that were told apart, the default filled in. */
   double gradient_range[2];
+  /* Into how many bins; 0: there is no joint histogram. */
   int gradient_bins;
-  /* The volume of all cells whose values are finite, and of the others, which are not counted below. */
-  double total, unknown;
-  /* The volume with values below the range, and above. */
-  double below, above;
+  /* The volume of all cells whose values are finite. */
+  double total;
+  /* The volume of the others, which are not counted below. */
+  double unknown;
+  /* The volume with values below the range. */
+  double below;
+  /* The volume with values above the range. */
+  double above;
   /* [bins]: the volume with values in each bin. */
   double *volume;
   /* [bins + 1]: the area of the isosurface at each bin's lower end and at the last one's upper end. */

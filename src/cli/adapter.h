@@ -39,6 +39,7 @@
 #define CLI_IMAGE_FUNCTIONS(X)                                                                                         \
   X(TetcastImageDesc, image_desc_default, (void))                                                                      \
   X(TetcastStatus, image_write, (TetcastContext *, const char *, const TetcastFrame *, const TetcastImageDesc *))      \
+  X(TetcastStatus, image_write_deep, (TetcastContext *, const char *, const TetcastDeep *, TetcastPixelType))          \
   X(TetcastStatus, image_check, (TetcastContext *, const char *, const TetcastImageDesc *))                            \
   X(TetcastStatus, image_read_depth, (TetcastContext *, const char *, int64_t, int64_t, double *))
 

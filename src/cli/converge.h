@@ -20,6 +20,7 @@ typedef struct ConvergeRow {
   TetcastIntegrator integrator;
   int n;            /* samples per segment, nodes, or table entries a side; 0: exact */
   double tolerance; /* 0: none */
+  double adaptive;  /* the epsilon of a picture by few rays; 0: by all */
   double scale;     /* of the extinction */
   int level;        /* refinement: cells along an edge of the cube; 0: not of a mesh of that kind */
   bool packets;     /* in STUDY_TIME, in which the other rows are held to the scalar kernel, to be fair */

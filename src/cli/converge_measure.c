@@ -10,6 +10,7 @@
 
 ConvergeRow *converge_plan(Converge *converge, ConvergeRow row) {
   converge->rows = cli_grow(converge->rows, converge->count, &converge->capacity, sizeof *converge->rows);
+  row.bound = (double)NAN; /* unless the library states one */
   converge->rows[converge->count] = row;
   return &converge->rows[converge->count++];
 }
@@ -62,6 +63,8 @@ TetcastStatus converge_render(Converge *converge, const TetcastScene *scene, con
     desc.integrator_n = row->n;
   desc.isa = row->study == STUDY_TIME && !row->packets ? TETCAST_ISA_SCALAR : (TetcastIsa)converge->options.isa;
   desc.tolerance = row->tolerance;
+  desc.adaptive_coarse = row->adaptive > 0 ? 4 : 0;
+  desc.adaptive_epsilon = row->adaptive;
   desc.progress = converge_progress(converge, weight);
   TetcastRenderStats stats;
   const double start = cli_seconds();
@@ -75,7 +78,7 @@ TetcastStatus converge_render(Converge *converge, const TetcastScene *scene, con
   converge->lost += stats.lost;
   if (row->tolerance > 0)
     row->bound = stats.error;
-  return row->integrator == TETCAST_INTEGRATOR_EXACT && row->tolerance == 0 && row->timed == 1
+  return row->integrator == TETCAST_INTEGRATOR_EXACT && row->tolerance == 0 && row->adaptive == 0 && row->timed == 1
              ? find_bound(converge, scene, camera, desc, frame, &row->bound)
              : TETCAST_OK;
 }
@@ -98,7 +101,7 @@ void converge_compare(ConvergeRow *row, const double *picture, const double *tru
 
 const char *converge_name(const ConvergeRow *row) {
   static const char *const names[] = {"exact", "midpoint", "trapezoid", "gauss", "table"};
-  return row->tolerance > 0 ? "tolerance" : names[row->integrator];
+  return row->tolerance > 0 ? "tolerance" : row->adaptive > 0 ? "adaptive" : names[row->integrator];
 }
 
 const ConvergeRow *converge_packets(const Converge *converge) {

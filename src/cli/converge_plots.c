@@ -27,35 +27,39 @@ typedef struct Curve {
   const char *color;
   int point;
   bool packets;
+  bool adaptive;
 } Curve;
 
 static const Curve scene_curves[] = {
-    {"exact", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, false, "#000000", 15, false},
-    {"tolerance", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, true, "#E69F00", 11, false},
-    {"midpoint", STUDY_TIME, TETCAST_INTEGRATOR_MIDPOINT, false, "#0072B2", 7, false},
-    {"trapezoid", STUDY_TIME, TETCAST_INTEGRATOR_TRAPEZOID, false, "#D55E00", 5, false},
-    {"gauss", STUDY_TIME, TETCAST_INTEGRATOR_GAUSS, false, "#009E73", 9, false},
-    {"table", STUDY_TIME, TETCAST_INTEGRATOR_TABLE, false, "#CC79A7", 13, false},
+    {"exact", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, false, "#000000", 15, false, false},
+    {"tolerance", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, true, "#E69F00", 11, false, false},
+    {"midpoint", STUDY_TIME, TETCAST_INTEGRATOR_MIDPOINT, false, "#0072B2", 7, false, false},
+    {"trapezoid", STUDY_TIME, TETCAST_INTEGRATOR_TRAPEZOID, false, "#D55E00", 5, false, false},
+    {"gauss", STUDY_TIME, TETCAST_INTEGRATOR_GAUSS, false, "#009E73", 9, false, false},
+    {"table", STUDY_TIME, TETCAST_INTEGRATOR_TABLE, false, "#CC79A7", 13, false, false},
 };
+/* In the plot of time alone. */
+static const Curve adaptive_curve = {"adaptive", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, false,
+                                     "#56B4E9",  3,          .adaptive = true};
 /* In the plot of time alone: the same colours, open points. */
 static const Curve packet_curves[] = {
-    {"exact-packets", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, false, "#000000", 14, true},
-    {"tolerance-packets", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, true, "#E69F00", 10, true},
+    {"exact-packets", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, false, "#000000", 14, true, false},
+    {"tolerance-packets", STUDY_TIME, TETCAST_INTEGRATOR_EXACT, true, "#E69F00", 10, true, false},
 };
 enum { PACKET_CURVES = sizeof packet_curves / sizeof *packet_curves };
 enum { SCENE_CURVES = sizeof scene_curves / sizeof *scene_curves };
 
 static const Curve refine_curves[] = {
-    {"exact", STUDY_REFINE, TETCAST_INTEGRATOR_EXACT, false, "#000000", 15, false},
-    {"midpoint-both", STUDY_REFINE, TETCAST_INTEGRATOR_MIDPOINT, false, "#E69F00", 6, false},
-    {"midpoint-integration", STUDY_INTEGRATION, TETCAST_INTEGRATOR_MIDPOINT, false, "#0072B2", 7, false},
-    {"gauss-integration", STUDY_INTEGRATION, TETCAST_INTEGRATOR_GAUSS, false, "#009E73", 9, false},
+    {"exact", STUDY_REFINE, TETCAST_INTEGRATOR_EXACT, false, "#000000", 15, false, false},
+    {"midpoint-both", STUDY_REFINE, TETCAST_INTEGRATOR_MIDPOINT, false, "#E69F00", 6, false, false},
+    {"midpoint-integration", STUDY_INTEGRATION, TETCAST_INTEGRATOR_MIDPOINT, false, "#0072B2", 7, false, false},
+    {"gauss-integration", STUDY_INTEGRATION, TETCAST_INTEGRATOR_GAUSS, false, "#009E73", 9, false, false},
 };
 enum { REFINE_CURVES = sizeof refine_curves / sizeof *refine_curves };
 
 static bool belongs(const ConvergeRow *row, const Curve *curve, ConvergeStudy study) {
   return row->study == study && row->integrator == curve->integrator && (row->tolerance > 0) == curve->tolerance &&
-         row->packets == curve->packets;
+         row->packets == curve->packets && (row->adaptive > 0) == curve->adaptive;
 }
 
 static const ConvergeRow *first_row(const Converge *converge, const Curve *curve, ConvergeStudy study) {
@@ -89,6 +93,8 @@ static void put_data(FILE *file, const Converge *converge, Plot plot) {
   else
     for (int i = 0; i < SCENE_CURVES; i++)
       put_curve(file, converge, &scene_curves[i], plot == PLOT_STIFFNESS ? STUDY_STIFFNESS : STUDY_TIME);
+  if (plot == PLOT_TIME)
+    put_curve(file, converge, &adaptive_curve, STUDY_TIME);
   if (plot == PLOT_TIME && converge_packets(converge))
     for (int i = 0; i < PACKET_CURVES; i++)
       put_curve(file, converge, &packet_curves[i], STUDY_TIME);
@@ -135,6 +141,8 @@ static void put_time_curve(FILE *file, const Converge *converge, const Curve *cu
     }
   if (curve->tolerance)
     snprintf(title, sizeof title, "tolerance, 10^{−1} … 10^{−9}");
+  else if (curve->adaptive)
+    snprintf(title, sizeof title, "adaptive, 10^{−1} … 10^{−5}: no bound");
   else if (low == 0)
     snprintf(title, sizeof title, "exact");
   else
@@ -153,6 +161,7 @@ static void put_time_curves(FILE *file, const Converge *converge) {
   put_heading(file, "plot", converge->rows[0].isa);
   for (int i = 0; i < SCENE_CURVES; i++)
     put_time_curve(file, converge, &scene_curves[i]);
+  put_time_curve(file, converge, &adaptive_curve);
   if (packets) {
     put_heading(file, ",", packets->isa);
     for (int i = 0; i < PACKET_CURVES; i++)

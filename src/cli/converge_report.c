@@ -26,9 +26,9 @@ static void put_csv(FILE *file, const Converge *converge) {
         file);
   for (int i = 0; i < converge->count; i++) {
     const ConvergeRow *row = &converge->rows[i];
-    const bool exact = row->integrator == TETCAST_INTEGRATOR_EXACT;
-    fprintf(file, "%s,%s,", studies[row->study], integrators[row->integrator]);
-    put_if(file, row->n > 0, row->n);
+    const bool adaptive = row->adaptive > 0, exact = row->integrator == TETCAST_INTEGRATOR_EXACT && !adaptive;
+    fprintf(file, "%s,%s,", studies[row->study], adaptive ? "adaptive" : integrators[row->integrator]);
+    put_if(file, row->n > 0 || adaptive, adaptive ? row->adaptive : row->n);
     fprintf(file, ",%s,%s,", row->precision, row->isa);
     put_if(file, exact, row->tolerance);
     fprintf(file, ",%.9g,", row->scale);
@@ -171,6 +171,8 @@ static void put_reference(FILE *file, const Converge *converge) {
 static void put_label(FILE *file, const ConvergeRow *row) {
   if (row->tolerance > 0)
     fprintf(file, "tolerance %.0e", row->tolerance);
+  else if (row->adaptive > 0)
+    fprintf(file, "adaptive %.0e", row->adaptive);
   else if (row->n > 0)
     fprintf(file, "%s:%d", converge_name(row), row->n);
   else
@@ -210,7 +212,7 @@ static void put_fairness(FILE *file, const Converge *converge) {
 static void put_costs(FILE *file, const Converge *converge) {
   fputs("\nWhat an error of at most so much costs, in seconds (the cheapest of those measured):\n\n| largest error |",
         file);
-  const ConvergeRow *kinds[8]; /* exact, tolerance, four others; the first two by packets */
+  const ConvergeRow *kinds[9]; /* exact, tolerance, four others, adaptive; the first two by packets */
   int count = 0;
   for (int i = 0; i < converge->count; i++) {
     const ConvergeRow *row = &converge->rows[i];
@@ -262,7 +264,8 @@ static void put_time(FILE *file, const Converge *converge) {
   }
   fputs("\nThe error of *exact* is its difference to the brute-force reference on the rays that were checked. The time "
         "of *table* "
-        "includes making the table.\n",
+        "includes making the table. *adaptive* is exact along rays, but casts few where pixels differ by less than "
+        "its number, and interpolates between them: what it doesn't see it misses, and nothing bounds its error.\n",
         file);
 }
 
@@ -389,7 +392,8 @@ static void put_files(FILE *file, const Converge *converge) {
         "* `study`: `time` (the scene as it is), `stiffness` (its extinction scaled), `refine` (the analytic field, "
         "all of the "
         "error), `integration` (the same, against the exact integral on that mesh);\n"
-        "* `integrator`, `parameter` (n), `precision`, `isa` (of the kernel that ran), `tolerance` (0: "
+        "* `integrator`, `parameter` (n; of `adaptive` the difference between pixels), `precision`, `isa` (of the "
+        "kernel that ran), `tolerance` (0: "
         "exact; empty: has none), `extinction_scale`, `mesh_size`, "
         "`cells`, `segments`;\n"
         "* `repeats`, `seconds` (their median), `max_error`, `rms_error` (inf: some pixels are not finite);\n"

@@ -21,7 +21,7 @@ static double weight(const ConvergeRow *row) {
   case TETCAST_INTEGRATOR_TABLE:
     return 2.5;
   default:
-    return row->packets ? 0.15 : 1;
+    return row->packets ? 0.15 : row->adaptive > 0 ? 0.5 : 1;
   }
 }
 
@@ -79,6 +79,11 @@ int converge_plan_scene(Converge *converge) {
       row.n = *n;
       converge_plan(converge, row);
     }
+  for (int digits = 1; digits <= 5; digits++) {
+    ConvergeRow row = exact;
+    row.adaptive = pow(10, -digits);
+    converge_plan(converge, row);
+  }
   exact.packets = true;
   if (packets)
     plan_exact(converge, exact);
@@ -214,7 +219,7 @@ static double peak_of(const Pictures *pictures) {
 static TetcastStatus run_row(Converge *converge, Pictures *pictures, int number) {
   ConvergeRow *row = &converge->rows[number];
   TetcastStatus status = TETCAST_OK;
-  const bool exact = row->integrator == TETCAST_INTEGRATOR_EXACT && row->tolerance == 0;
+  const bool exact = row->integrator == TETCAST_INTEGRATOR_EXACT && row->tolerance == 0 && row->adaptive == 0;
   if (exact && row->study == STUDY_STIFFNESS)
     status = scale_extinction(converge, row->scale, &pictures->scaled);
   if (status == TETCAST_OK)

@@ -31,9 +31,9 @@ static bool range_of_picture(const Run *run) {
 
 /* Colours the picture by the preset over the range of its values. */
 static TetcastStatus color_by_picture(Run *run) {
-  const bool wide = tetcast_frame_type(run->values) == TETCAST_TYPE_FLOAT64;
-  const void *values = tetcast_frame_channel(run->values, TETCAST_CHANNEL_VALUE);
-  const int64_t count = tetcast_frame_width(run->values) * tetcast_frame_height(run->values);
+  const bool wide = tetcast_frame_type(run->frame) == TETCAST_TYPE_FLOAT64;
+  const void *values = tetcast_frame_channel(run->frame, TETCAST_CHANNEL_VALUE);
+  const int64_t count = tetcast_frame_width(run->frame) * tetcast_frame_height(run->frame);
   double range[2] = {INFINITY, -INFINITY};
   for (int64_t i = 0; i < count; i++) {
     const double value = wide ? ((const double *)values)[i] : (double)((const float *)values)[i];
@@ -48,7 +48,7 @@ static TetcastStatus color_by_picture(Run *run) {
   tetcast_transfer_function_destroy(&stage->transfer_function);
   const TetcastStatus status = tetcast_scene_create_preset(stage->scene, render_options_preset(&run->options), range[0],
                                                            range[1], &stage->transfer_function);
-  return status == TETCAST_OK ? tetcast_frame_recolor(run->values, stage->transfer_function) : status;
+  return status == TETCAST_OK ? tetcast_frame_recolor(run->frame, stage->transfer_function) : status;
 }
 
 int picture_create_frame(Run *run) {
@@ -58,14 +58,11 @@ int picture_create_frame(Run *run) {
   desc.height = (int64_t)options->size[1];
   desc.type = options->pixel_type == TETCAST_PIXEL_DOUBLE ? TETCAST_TYPE_FLOAT64 : TETCAST_TYPE_FLOAT32;
   desc.channels = render_options_channels(options);
+  if (range_of_picture(run)) /* it is coloured by them; they are written if they were asked for */
+    desc.channels |= TETCAST_CHANNEL_VALUE;
   if (tetcast_scene_groups(run->stage.scene) > 0)
     desc.groups = tetcast_scene_groups(run->stage.scene);
-  TetcastStatus status = tetcast_frame_create(run->stage.context, &desc, &run->frame);
-  if (status == TETCAST_OK && range_of_picture(run)) {
-    desc.channels = TETCAST_CHANNEL_VALUE;
-    desc.pixels = (void *)tetcast_frame_pixels(run->frame);
-    status = tetcast_frame_create(run->stage.context, &desc, &run->values);
-  }
+  const TetcastStatus status = tetcast_frame_create(run->stage.context, &desc, &run->frame);
   return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }
 
@@ -133,7 +130,13 @@ int picture_render(Run *run) {
   if (!stats->render_seconds)
     stats->render_seconds = cli_allocate(sizeof(double) * (size_t)stats->repeats);
   TetcastRenderDesc desc = tetcast_render_desc_default();
-  desc.samples = (int)run->options.samples;
+  if (render_options_adaptive(&run->options)) {
+    desc.adaptive_epsilon = run->options.adaptive[0];
+    desc.adaptive_coarse = (int)run->options.adaptive[1];
+    desc.adaptive_fine = (int)run->options.adaptive[2];
+  } else {
+    desc.samples = (int)run->options.samples;
+  }
   desc.isa = (TetcastIsa)run->options.isa;
   desc.tolerance = stats->tolerance = run->options.tolerance;
   stats->blend = render_option_choice(OPTION_BLEND, (int)render_options_blend(&run->options));
@@ -144,12 +147,17 @@ int picture_render(Run *run) {
     const double start = cli_seconds();
     desc.progress = cli_progress("rendering");
     desc.stop = run->stop ? &stop : NULL;
-    TetcastStatus status = tetcast_scene_render(run->stage.scene, &run->stage.camera, &desc,
-                                                run->values ? run->values : run->frame, &stats->render);
-    if (status == TETCAST_OK && run->values)
+    TetcastStatus status =
+        tetcast_scene_render(run->stage.scene, &run->stage.camera, &desc, run->frame, &stats->render);
+    if (status == TETCAST_OK && range_of_picture(run))
       status = color_by_picture(run);
     stats->render_seconds[i] = cli_seconds() - start;
     cli_progress_clear();
+    if (status != TETCAST_OK || cli_interrupted())
+      return cli_failed(status);
+  }
+  if (render_options_deep(&run->options)) {
+    const TetcastStatus status = deep_render(&run->deep, &run->stage, &run->options, &desc, run->frame);
     if (status != TETCAST_OK || cli_interrupted())
       return cli_failed(status);
   }
@@ -165,7 +173,10 @@ int picture_write(Run *run, const char *path) {
   const Stage *stage = &run->stage;
   picture_await_image(run);
   const double start = cli_seconds();
-  const TetcastStatus status = run->image->image_write(stage->context, path, run->frame, &run->image_desc);
+  const TetcastStatus status =
+      render_options_deep(&run->options)
+          ? run->image->image_write_deep(stage->context, path, &run->deep.image, run->image_desc.pixel_type)
+          : run->image->image_write(stage->context, path, run->frame, &run->image_desc);
   run->stats.write_seconds = cli_seconds() - start;
   run->stats.read_seconds = stage->read_seconds;
   run->stats.prepare_seconds = stage->prepare_seconds;

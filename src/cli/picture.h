@@ -7,6 +7,7 @@
 #include <semaphore.h>
 
 #include "adapter.h"
+#include "deep.h"
 #include "json.h"
 #include "render_options.h"
 #include "stage.h"
@@ -16,14 +17,15 @@ typedef struct Run {
   RenderOptions options;
   const CliImage *image;
   TetcastImageDesc image_desc;
-  double *stop; /* [height][width], of --stop-depth; NULL: none */
+  TetcastChannel channels[32]; /* of --channels, in its order */
+  double *stop;                /* [height][width], of --stop-depth; NULL: none */
   pthread_t image_thread;
   sem_t image_begun;
   bool image_pending; /* image_thread still has to be waited for */
   Stage stage;
   TetcastFrame *frame;
-  TetcastFrame *values; /* the same pixels with their values, where colours follow from them; NULL: they don't */
-  RunStats stats;       /* of the last picture */
+  Deep deep;      /* of a deep picture; else zeros */
+  RunStats stats; /* of the last picture */
 } Run;
 
 /* Each step returns an exit code. */

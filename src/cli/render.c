@@ -65,6 +65,10 @@ static int check_image(Run *run) {
   run->image_desc = run->image->image_desc_default();
   run->image_desc.pixel_type = (TetcastPixelType)run->options.pixel_type;
   memcpy(run->image_desc.background, run->options.background, sizeof run->options.background);
+  if (run->options.channels)
+    run->image_desc.channel_count = render_option_channel_list(run->options.channels, run->channels);
+  if (!render_options_groups(&run->options) || run->options.channels) /* else all that there are */
+    run->image_desc.channels = run->channels;
   run->image_desc.channels_only = render_options_given(&run->options, OPTION_GROUPS) && run->options.groups;
   cli_interrupt_hold(true); /* the check puts a file in a folder for a moment */
   const TetcastStatus status = run->image->image_check(run->stage.context, run->options.output, &run->image_desc);
@@ -172,9 +176,9 @@ int tetcast_cli_render(int argc, char **argv) {
     code = perform(&run);
   }
   picture_await_image(&run);
-  tetcast_frame_destroy(&run.values);
   tetcast_frame_destroy(&run.frame);
   stage_release(&run.stage);
+  deep_release(&run.deep);
   free(run.stop);
   free(run.stats.render_seconds);
   render_options_release(&run.options);

@@ -21,7 +21,7 @@
 #define DIRECT (BIT(OPTION_EXTINCTION) | BIT(OPTION_EMISSION) | BIT(OPTION_GROUPS))
 #define TRANSFER                                                                                                       \
   (BIT(OPTION_ARRAY) | BIT(OPTION_TRANSFER) | BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | BIT(OPTION_OPACITY_MODEL) |     \
-   BIT(OPTION_BLEND) | BIT(OPTION_ISOSURFACE) | BIT(OPTION_SLICE) | BIT(OPTION_SURFACE))
+   BIT(OPTION_BLEND) | BIT(OPTION_ISOSURFACE) | BIT(OPTION_SLICE) | BIT(OPTION_SURFACE) | BIT(OPTION_EDGES))
 
 /* Order of the library's enumerations. */
 static const char *const opacity_models[] = {"unit-distance", "vtk-unstructured", "ospray", NULL};
@@ -71,6 +71,10 @@ const RenderRow render_table[OPTION_COUNT] = {
                       .form = "expected nx,ny,nz,d[:OPACITY]: four numbers, nx,ny,nz not 0,0,0, and one from 0 to 1"},
     [OPTION_SURFACE] = {"surface", KIND_OPTIONAL, AT(surface), .excludes = DIRECT,
                         .form = "expected [COLOUR][:OPACITY], a name, #rrggbb or r,g,b, and a number from 0 to 1"},
+    [OPTION_EDGES] = {"edges", KIND_OPTIONAL, AT(edges), .excludes = DIRECT, .only = COMMAND_RENDER,
+                      .form = "expected nothing, or a colour: a name, #rrggbb or r,g,b"},
+    [OPTION_OUTLINE] = {"outline", KIND_OPTIONAL, AT(outline), .only = COMMAND_RENDER,
+                        .form = "expected nothing, or a colour: a name, #rrggbb or r,g,b"},
     [OPTION_SHADE] = {"shade", KIND_CHOICE, AT(shade), .names = shades,
                       .form = "expected none, surfaces, volume or all"},
     [OPTION_NORMALS] = {"normals", KIND_CHOICE, AT(normals), .names = normals, .form = "expected smooth or flat"},
@@ -98,8 +102,12 @@ const RenderRow render_table[OPTION_COUNT] = {
                       .form = "expected a height above 0"},
     [OPTION_SIZE] = {"size", KIND_INTEGERS, AT(size), 2, 2, 1, 1 << 20,
                      .form = "expected WxH: whole numbers from 1 to 1048576, no more than 2^30 pixels"},
-    [OPTION_SAMPLES] = {"samples", KIND_INTEGERS, AT(samples), 1, 1, 1, 65536, .only = COMMAND_RENDER,
-                        .form = "expected a whole number from 1 to 65536"},
+    [OPTION_SAMPLES] = {"samples", KIND_INTEGERS, AT(samples), 1, 1, 1, 65536, .excludes = BIT(OPTION_ADAPTIVE),
+                        .only = COMMAND_RENDER, .form = "expected a whole number from 1 to 65536"},
+    [OPTION_ADAPTIVE] = {"adaptive", KIND_NUMBERS, AT(adaptive), 1, 3, 0, DBL_MAX, .excludes = BIT(OPTION_SAMPLES),
+                         .only = COMMAND_RENDER,
+                         .form = "expected EPS[,COARSE[,FINE]]: a number, 0 or above, a power of two from 1 to 64, and "
+                                 "a whole number from 1 to 65536"},
     [OPTION_BACKGROUND] = {"background", KIND_NUMBERS, AT(background), 3, 4, 0, 1, .only = COMMAND_RENDER,
                            .form = "expected r,g,b or r,g,b,a from 0 to 1, a name such as white or transparent, or "
                                    "#rrggbb"},
@@ -108,10 +116,12 @@ const RenderRow render_table[OPTION_COUNT] = {
          .form = "expected exact, midpoint:N, trapezoid:N, gauss:N (N to 16) or table:N (N from 2 to 4096)"},
     [OPTION_TOLERANCE] = {"tolerance", KIND_NUMBERS, AT(tolerance), 1, 1, 0, DBL_MAX, .only = COMMAND_RENDER,
                           .form = "expected a number, 0 or above"},
-    [OPTION_CHANNELS] =
-        {"channels", KIND_TEXT, AT(channels), .only = COMMAND_RENDER,
-         .form =
-             "expected error, or depth, or value, or of radiance, optical_depth, transmittance and path_length some"},
+    [OPTION_CHANNELS] = {"channels", KIND_TEXT, AT(channels), .only = COMMAND_RENDER,
+                         .form = "expected error, or depth, normal, or value, or of radiance, optical_depth, "
+                                 "transmittance, path_length some; "
+                                 "and cells"},
+    [OPTION_DEEP] = {"deep", KIND_OPTIONAL, AT(deep), .only = COMMAND_RENDER,
+                     .form = "expected nothing, or a whole number from 1 to 1024"},
     [OPTION_TRAVERSAL] = {"traversal", KIND_CHOICE, AT(traversal), .names = traversals,
                           .form = "expected shell or faces"},
     [OPTION_ISA] = {"isa", KIND_CHOICE, AT(isa), .names = isas, .form = "expected auto, scalar, avx2 or avx512"},
@@ -290,18 +300,38 @@ static uint32_t channel_bit(const char *name, size_t length) {
   return 0;
 }
 
-uint32_t render_option_channels(const char *text) {
-  uint32_t channels = 0;
-  for (;;) {
+int render_option_channel_list(const char *text, TetcastChannel channels[32]) {
+  uint32_t all = 0;
+  for (int count = 0;;) {
     const size_t length = strcspn(text, ",");
     const uint32_t bit = channel_bit(text, length);
-    if (!bit || channels & bit)
+    if (!bit || all & bit)
       return 0;
-    channels |= bit;
+    all |= bit;
+    channels[count++] = (TetcastChannel)bit;
     if (!text[length])
-      return channels;
+      return count;
     text += length + 1;
   }
+}
+
+uint32_t render_option_channels(const char *text) {
+  TetcastChannel list[32];
+  uint32_t channels = 0;
+  for (int i = render_option_channel_list(text, list); i > 0; i--)
+    channels |= (uint32_t)list[i - 1];
+  return channels;
+}
+
+int render_option_deep(const char *text) {
+  double number = 32;
+  if (*text && !cli_parse_number(text, &number))
+    return 0;
+  return number >= 1 && number <= 1024 && number == floor(number) ? (int)number : 0;
+}
+
+int render_options_deep(const RenderOptions *options) {
+  return render_options_given(options, OPTION_DEEP) ? render_option_deep(options->deep) : 0;
 }
 
 bool render_options_groups(const RenderOptions *options) {
@@ -435,6 +465,19 @@ static const char *set_range(RenderOptions *options, const OptionValue *value) {
   return reason;
 }
 
+static const char *set_adaptive(double adaptive[3], const OptionValue *value) {
+  double given[3] = {0, 4, 1};
+  const char *reason = set_numbers(OPTION_ADAPTIVE, given, value);
+  if (reason)
+    return reason;
+  const double coarse = given[1], fine = given[2];
+  if (!(coarse >= 1 && coarse <= 64 && exp2(floor(log2(coarse))) == coarse) ||
+      !(fine >= 1 && fine <= 65536 && fine == floor(fine)))
+    return render_table[OPTION_ADAPTIVE].form;
+  memcpy(adaptive, given, sizeof given);
+  return NULL;
+}
+
 /* One half-space more. */
 static const char *add_half_space(RenderOptions *options, const OptionValue *value) {
   const double *n = value->numbers;
@@ -451,6 +494,8 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
     return set_range(options, value);
   if (id == OPTION_BACKGROUND)
     return set_color(id, at, value);
+  if (id == OPTION_ADAPTIVE)
+    return set_adaptive(options->adaptive, value);
   if (id == OPTION_CLIP)
     return add_half_space(options, value);
   switch (render_table[id].kind) {
@@ -468,7 +513,12 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
     if (!value->text || (!*value->text && render_table[id].kind != KIND_OPTIONAL))
       return render_table[id].form;
     TetcastBoundary boundary;
+    double color[3];
     if (id == OPTION_SURFACE && !surfaces_parse_boundary(value->text, &boundary))
+      return render_table[id].form;
+    if (id == OPTION_DEEP && !render_option_deep(value->text))
+      return render_table[id].form;
+    if ((id == OPTION_EDGES || id == OPTION_OUTLINE) && *value->text && !surfaces_parse_color(value->text, color))
       return render_table[id].form;
     TetcastIntegrator integrator;
     int n;

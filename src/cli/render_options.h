@@ -34,6 +34,8 @@ typedef enum OptionId {
   OPTION_ISOSURFACE,
   OPTION_SLICE,
   OPTION_SURFACE,
+  OPTION_EDGES,
+  OPTION_OUTLINE,
   OPTION_SHADE,
   OPTION_NORMALS,
   OPTION_MATERIAL,
@@ -50,10 +52,12 @@ typedef enum OptionId {
   OPTION_ORTHO,
   OPTION_SIZE,
   OPTION_SAMPLES,
+  OPTION_ADAPTIVE,
   OPTION_BACKGROUND,
   OPTION_INTEGRATOR,
   OPTION_TOLERANCE,
   OPTION_CHANNELS,
+  OPTION_DEEP,
   OPTION_TRAVERSAL,
   OPTION_ISA,
   OPTION_THREADS,
@@ -85,7 +89,7 @@ typedef struct RenderOptions {
   RenderCommand command;
   /* NULL unless given */
   char *input, *output, *array, *block, *time, *transfer, *preset, *extinction, *emission, *integrator, *channels,
-      *surface, *stats, *scene, *save_scene, *stop_depth;
+      *surface, *edges, *outline, *deep, *stats, *scene, *save_scene, *stop_depth;
   char **inputs; /* [input_count] of several files, the steps of a series; input is the first. NULL: one file */
   int input_count;
   json_t *transfer_object; /* of a scene file; instead of transfer */
@@ -93,7 +97,7 @@ typedef struct RenderOptions {
   int clip_count, clip_capacity;
   double clip_box[6]; /* x0, x1, y0, … */
   double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], tolerance, threads, repeat;
-  double material[4];
+  double material[4], adaptive[3]; /* epsilon, coarse, fine */
   TextList isosurfaces, slices, lights;
   double merge_tolerance; /* negative unless given */
   RangeKind range_kind;   /* RANGE_FIXED: options->range; RANGE_QUANTILES: these shares of the volume */
@@ -175,8 +179,22 @@ static inline bool render_options_surfaces_alone(const RenderOptions *options) {
   return render_options_surfaces(options) && !render_options_given(options, OPTION_TRANSFER);
 }
 
+/* How many parts the rays of a deep picture have; 0: it is none. */
+int render_options_deep(const RenderOptions *options);
+
+/* The number of parts that a text says, 32 where it is empty; 0: it says none. */
+int render_option_deep(const char *text);
+
+/* Whether rays are cast only where the picture has something to show. */
+static inline bool render_options_adaptive(const RenderOptions *options) {
+  return render_options_given(options, OPTION_ADAPTIVE);
+}
+
 /* The TetcastChannel bits of a list as --channels has it, 0: there is something else in it. */
 uint32_t render_option_channels(const char *text);
+
+/* The same one by one, in the order of the list; returns how many there are. */
+int render_option_channel_list(const char *text, TetcastChannel channels[32]);
 
 /* Those of the frame; --groups alone means the radiance, or the transmittance when nothing is emitted. */
 uint32_t render_options_channels(const RenderOptions *options);

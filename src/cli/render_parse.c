@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <tetcast/image.h>
 #include <tetcast/transfer_function.h>
 
 #include "cli.h"
@@ -54,8 +55,22 @@ static const char *find_darkness(const RenderOptions *options) {
 /* What of coefficients and what of a transfer function doesn't go together. NULL: nothing. */
 static const char *find_mixture(const RenderOptions *options) {
   const uint32_t channels = render_options_channels(options);
-  if (channels & TETCAST_CHANNEL_DEPTH && channels & TETCAST_CHANNEL_ERROR)
-    return "--channels: error and depth are not possible in one picture";
+  const bool of_depth = channels & (TETCAST_CHANNEL_DEPTH | TETCAST_CHANNEL_NORMAL);
+  if (of_depth && channels & TETCAST_CHANNEL_ERROR)
+    return channels & TETCAST_CHANNEL_DEPTH ? "--channels: error and depth are not possible in one picture"
+                                            : "--channels: error and normal are not possible in one picture";
+  if (render_options_adaptive(options) && channels)
+    return "--channels, --groups: not possible with --adaptive, which interpolates between rays";
+  if (render_options_adaptive(options) && render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
+    return "--adaptive: needs --blend composite";
+  if (render_options_given(options, OPTION_EDGES) && !render_options_given(options, OPTION_SURFACE))
+    return "--edges: needs --surface, on which they are drawn";
+  if (render_options_given(options, OPTION_OUTLINE) &&
+      (channels & TETCAST_CHANNEL_VALUE ||
+       (render_options_blend(options) == TETCAST_BLEND_ADDITIVE && !render_options_given(options, OPTION_TRANSFER) &&
+        render_options_range(options) != RANGE_FIXED)))
+    return "--outline: not possible with --channels value, and with --blend additive only with --range LO,HI or "
+           "--transfer";
   if (render_options_surfaces(options)) {
     if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
       return "--isosurface, --slice, --surface: need --blend composite";
@@ -76,8 +91,8 @@ static const char *find_mixture(const RenderOptions *options) {
     if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE) {
       if (options->integrator && strcmp(options->integrator, "exact"))
         return "--integrator: with another --blend than composite there is only exact";
-      return channels & ~(uint32_t)TETCAST_CHANNEL_VALUE
-                 ? "--channels: only value is possible with another --blend than composite"
+      return channels & ~(uint32_t)(TETCAST_CHANNEL_VALUE | TETCAST_CHANNEL_CELLS)
+                 ? "--channels: only value and cells are possible with another --blend than composite"
                  : NULL;
     }
     if (channels & TETCAST_CHANNEL_VALUE)
@@ -86,12 +101,14 @@ static const char *find_mixture(const RenderOptions *options) {
     for (int i = 0;
          (info = tetcast_channel_info(i)) && !(channels & (uint32_t)info->channel && info->needs_coefficients);)
       i++;
-    return info ? "--channels: only error or depth is possible without --extinction or --emission" : NULL;
+    return info ? "--channels: only cells, error, or depth and normal are possible without --extinction or --emission"
+                : NULL;
   }
   if (options->integrator && strcmp(options->integrator, "exact"))
     return "--integrator: with --extinction or --emission there is only exact";
-  if (channels & TETCAST_CHANNEL_DEPTH)
-    return "--channels depth: not possible with --extinction or --emission";
+  if (of_depth)
+    return channels & TETCAST_CHANNEL_DEPTH ? "--channels depth: not possible with --extinction or --emission"
+                                            : "--channels normal: not possible with --extinction or --emission";
   if (channels & TETCAST_CHANNEL_VALUE)
     return "--channels value: not possible with --extinction or --emission";
   if (channels & TETCAST_CHANNEL_RADIANCE && !render_options_given(options, OPTION_EMISSION))
@@ -102,20 +119,43 @@ static const char *find_mixture(const RenderOptions *options) {
   return NULL;
 }
 
+/* What can't be with a deep picture. NULL: nothing. */
+static const char *find_flat(const RenderOptions *options) {
+  if (!render_options_deep(options))
+    return NULL;
+  if (!options->output || !render_option_has_extension(options->output, ".exr"))
+    return "--deep: only .exr holds deep pictures";
+  if (options->pixel_type != TETCAST_PIXEL_DEFAULT && options->pixel_type != TETCAST_PIXEL_HALF &&
+      options->pixel_type != TETCAST_PIXEL_FLOAT)
+    return "--deep: needs --pixel-type float or half";
+  if (render_options_channels(options))
+    return "--channels, --groups: not possible with --deep";
+  if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
+    return "--deep: needs --blend composite";
+  if (options->integrator && strcmp(options->integrator, "exact"))
+    return "--integrator: with --deep there is only exact";
+  if (render_options_adaptive(options) || (render_options_given(options, OPTION_SAMPLES) && options->samples > 1))
+    return "--deep: needs one ray per pixel, without --samples and --adaptive";
+  return render_options_given(options, OPTION_OUTLINE) ? "--outline: not possible with --deep" : NULL;
+}
+
 /* What is wrong with options that are in order one by one (for free()), NULL: nothing. */
 static char *find_fault(const RenderOptions *options) {
   const char *view = view_fault(options);
   if (!view)
     view = find_mixture(options);
+  if (!view)
+    view = find_flat(options);
   if (view)
     return cli_duplicate(view);
   TetcastIntegrator integrator = TETCAST_INTEGRATOR_EXACT;
   int n;
   if (options->integrator)
     render_option_integrator(options->integrator, &integrator, &n);
-  if (integrator != TETCAST_INTEGRATOR_EXACT && (options->tolerance > 0 || options->channels))
+  const bool exactly = render_options_channels(options) & ~(uint32_t)TETCAST_CHANNEL_CELLS;
+  if (integrator != TETCAST_INTEGRATOR_EXACT && (options->tolerance > 0 || exactly))
     return cli_print("%s: only the exact integrator knows its error, not %s",
-                     options->channels ? "--channels error" : "--tolerance", options->integrator);
+                     exactly ? "--channels error" : "--tolerance", options->integrator);
   if (!render_options_channels(options))
     return NULL;
   const char *output = options->output ? options->output : ".png",
@@ -186,9 +226,15 @@ static void list_words(RenderCommand command, struct option words[OPTION_COUNT +
 }
 
 /* The value of an option that may have none: the next word, if it can be that. */
-static const char *take_optional(int argc, char **argv) {
+static const char *take_optional(OptionId id, int argc, char **argv) {
   TetcastBoundary boundary;
-  return optind < argc && surfaces_parse_boundary(argv[optind], &boundary) ? argv[optind++] : "";
+  double color[3];
+  if (optind >= argc)
+    return "";
+  const bool fits = id == OPTION_SURFACE ? surfaces_parse_boundary(argv[optind], &boundary)
+                    : id == OPTION_DEEP  ? *argv[optind] && render_option_deep(argv[optind])
+                                         : surfaces_parse_color(argv[optind], color);
+  return fits ? argv[optind++] : "";
 }
 
 /* The words of the command line; with `scene_only` everything but the options --scene and --help is left for later. */
@@ -210,7 +256,7 @@ static int parse_words(RenderOptions *options, int argc, char **argv, bool scene
       return cli_usage_error(command_name(options), "unknown option -output; did you mean --output?");
     const char *text = optarg;
     if (!text && render_table[id].kind == KIND_OPTIONAL)
-      text = take_optional(argc, argv);
+      text = take_optional(id, argc, argv);
     if (scene_only != (id == OPTION_SCENE))
       continue;
     const int result = set_from_text(options, id, text);

@@ -227,12 +227,16 @@ static json_t *text_array(const TextList *list) {
 }
 
 static void write_surfaces(json_t *scene, const RenderOptions *options) {
+  if (render_options_given(options, OPTION_OUTLINE))
+    json_object_set_new(scene, "outline", json_string(options->outline));
   if (options->isosurfaces.count > 0)
     json_object_set_new(scene, "isosurface", text_array(&options->isosurfaces));
   if (options->slices.count > 0)
     json_object_set_new(scene, "slice", text_array(&options->slices));
   if (options->surface)
     json_object_set_new(scene, "surface", json_string(options->surface));
+  if (render_options_given(options, OPTION_EDGES))
+    json_object_set_new(scene, "edges", json_string(options->edges));
   if (render_options_given(options, OPTION_SHADE))
     json_object_set_new(scene, "shade", json_string(render_option_choice(OPTION_SHADE, options->shade)));
   if (render_options_given(options, OPTION_NORMALS))
@@ -298,12 +302,17 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
   clip_write(options, scene);
   json_object_set_new(scene, "camera", camera_object(camera));
   json_object_set_new(scene, "size", size_array(options->size));
-  json_object_set_new(scene, "samples", json_integer((json_int_t)options->samples));
+  if (render_options_adaptive(options))
+    json_object_set_new(scene, "adaptive", cli_json_array(options->adaptive, 3));
+  else
+    json_object_set_new(scene, "samples", json_integer((json_int_t)options->samples));
   json_object_set_new(scene, "background", cli_json_array(options->background, 4));
   if (options->integrator)
     json_object_set_new(scene, "integrator", json_string(options->integrator));
   if (options->tolerance > 0)
     json_object_set_new(scene, "tolerance", json_real(options->tolerance));
+  if (render_options_deep(options))
+    json_object_set_new(scene, "deep", json_string(options->deep));
   if (options->channels)
     json_object_set_new(scene, "channels", json_string(options->channels));
   json_object_set_new(scene, "traversal", json_string(render_option_choice(OPTION_TRAVERSAL, options->traversal)));

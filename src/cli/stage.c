@@ -306,6 +306,8 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
   if (status == TETCAST_OK && stage->field && render_options_range(options) == RANGE_QUANTILES)
     status =
         tetcast_statistics_quantiles(stage->context, stage->mesh, stage->field, options->range, 2, stage->quantiles);
+  if (status == TETCAST_OK)
+    status = surfaces_outline(stage->scene, options);
   if (status != TETCAST_OK)
     return cli_failed(status);
   tetcast_volume_info(stage->volume, &stage->info);

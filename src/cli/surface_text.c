@@ -18,8 +18,7 @@ static char *next_part(const char **text) {
   return part;
 }
 
-/* A name, #rrggbb, or three numbers r,g,b from 0 to 1. */
-static bool parse_color(const char *text, double color[3]) {
+bool surfaces_parse_color(const char *text, double color[3]) {
   double rgba[4];
   if (cli_parse_numbers(text, ',', 4, rgba) == 3) {
     for (int k = 0; k < 3; k++)
@@ -43,7 +42,7 @@ static bool parse_look(const char *text, double color[3], int *colored, double *
       fine = !done && *opacity >= 0 && *opacity <= 1;
       done = true;
     } else {
-      fine = !done && !*colored && parse_color(part, color);
+      fine = !done && !*colored && surfaces_parse_color(part, color);
       *colored = 1;
     }
     free(part);
@@ -89,7 +88,7 @@ bool surfaces_parse_light(const char *text, TetcastLight *light) {
   const double *d = light->direction;
   const bool fine = direction && cli_parse_numbers(direction, ',', 3, light->direction) == 3 && isfinite(d[0]) &&
                     isfinite(d[1]) && isfinite(d[2]) && (d[0] != 0 || d[1] != 0 || d[2] != 0) &&
-                    (!color || parse_color(color, light->color)) && !text;
+                    (!color || surfaces_parse_color(color, light->color)) && !text;
   free(direction);
   free(color);
   return fine;

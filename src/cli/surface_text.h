@@ -9,6 +9,9 @@
 #include <tetcast/shading.h>
 #include <tetcast/slice.h>
 
+/* A colour: a name, #rrggbb, or three numbers r,g,b from 0 to 1. False: it is none. */
+bool surfaces_parse_color(const char *text, double color[3]);
+
 /* An isosurface as --isosurface has it, VALUE[:COLOUR][:OPACITY]; *colored: it has a colour. False: it is none. */
 bool surfaces_parse(const char *text, TetcastIsosurface *isosurface, bool *colored);
 

@@ -53,6 +53,17 @@ static TetcastStatus set_isosurfaces(TetcastScene *scene, const TextList *list,
   return status;
 }
 
+TetcastStatus surfaces_outline(TetcastScene *scene, const RenderOptions *options) {
+  if (!render_options_given(options, OPTION_OUTLINE))
+    return TETCAST_OK;
+  const double *back = options->background;
+  const double brightness = 1 - back[3] + back[3] * (0.2126 * back[0] + 0.7152 * back[1] + 0.0722 * back[2]);
+  double color[3];
+  if (!*options->outline || !surfaces_parse_color(options->outline, color))
+    color[0] = color[1] = color[2] = brightness < 0.5; /* what stands out */
+  return tetcast_scene_set_outline(scene, color);
+}
+
 static TetcastStatus set_light(TetcastScene *scene, const RenderOptions *options) {
   TetcastLight lights[TETCAST_MAX_LIGHTS];
   TetcastShadingDesc desc = tetcast_shading_desc_default();
@@ -85,7 +96,11 @@ TetcastStatus surfaces_set(TetcastScene *scene, const RenderOptions *options,
   TetcastStatus status = set_isosurfaces(scene, &options->isosurfaces, transfer_function, range);
   if (status == TETCAST_OK)
     status = tetcast_scene_set_slices(scene, slices, options->slices.count);
-  if (status == TETCAST_OK && options->surface && surfaces_parse_boundary(options->surface, &boundary))
+  if (status == TETCAST_OK && options->surface && surfaces_parse_boundary(options->surface, &boundary)) {
+    boundary.edges = render_options_given(options, OPTION_EDGES);
+    if (boundary.edges && *options->edges)
+      surfaces_parse_color(options->edges, boundary.edge_color);
     status = tetcast_scene_set_boundary(scene, &boundary);
+  }
   return status == TETCAST_OK ? set_light(scene, options) : status;
 }

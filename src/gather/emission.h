@@ -285,7 +285,7 @@ TC_NOINLINE void tc_emission_boundary(const TcGatherJob *job, TcEmission *e, TcM
   tc_emission_surface(e, mask, &meeting);
   const TcVec depth = enter ? passage->entry->z : passage->walk->at.z;
   if (job->surfaces->depth)
-    tc_layers_step(&e->layers, mask, &meeting.opacity, &depth);
+    tc_layers_step(&e->layers, mask, &meeting, &depth);
 }
 
 /* The lanes of `mask` meet an isosurface or, those of `slices`, a slice, at `fraction` of what counts of their cells.
@@ -306,7 +306,7 @@ TC_NOINLINE void tc_emission_within(const TcGatherJob *job, TcEmission *e, TcMas
   tc_emission_surface(e, mask, &meeting);
   const TcVec depth = tc_madd(*fraction, tc_select(mask, passage->length, tc_set(0)), passage->begin);
   if (job->surfaces->depth)
-    tc_layers_step(&e->layers, mask, &meeting.opacity, &depth);
+    tc_layers_step(&e->layers, mask, &meeting, &depth);
   if (tc_any(slices))
     tc_layers_next_slice(job->surfaces, passage->walk, slices, true, e->layers.slice, &e->layers);
 }
@@ -467,7 +467,7 @@ TC_INLINE TcMask tc_emission_complete(const unsigned on, const TcGatherJob *job,
 #endif
 }
 
-/* The sums are red, green, blue, alpha. */
+/* The sums are red, green, blue, alpha; if they are wanted, the depth and whether there is one, and its normal. */
 TC_INLINE void tc_emission_end(const unsigned on, const TcGatherJob *job, TcEmission *e, const TcEnding *ending,
                                double (*sums)[TC_LANES]) {
   tc_emission_end_block(on, e);
@@ -485,10 +485,12 @@ TC_INLINE void tc_emission_end(const unsigned on, const TcGatherJob *job, TcEmis
     else
       TC_EACH_LANE sums[k][l] = sums[3][l] * job->pieces->largest[k];
   }
-  for (int l = 0; on & TC_SURFACES && job->sums == 6 && l < TC_LANES; ++l) {
+  for (int l = 0; on & TC_SURFACES && job->surfaces->depth && l < TC_LANES; ++l) {
     const double depth = (double)TC_AT(e->layers.depth, l);
     sums[5][l] = depth < INFINITY;
     sums[4][l] = depth < INFINITY ? depth + TC_AT(ending->start, l) : 0;
+    for (int k = 0; job->surfaces->normal && k < 3; ++k)
+      sums[6 + k][l] = (double)TC_AT(e->layers.normal[k], l);
   }
   if (!(on & TC_BOUND))
     return;

@@ -8,6 +8,7 @@
 #include "gather/length.h"
 #if !TC_SINGLE
 #include "gather/coefficients.h"
+#include "gather/count.h"
 #include "gather/value.h"
 #endif
 #if TC_LANES == 1
@@ -19,11 +20,13 @@
 #define TC_GATHERERS(GATHERER) GATHERER(emission, TcEmission) GATHERER(length, TcLength)
 #elif TC_LANES > 1
 #define TC_GATHERERS(GATHERER)                                                                                         \
-  GATHERER(emission, TcEmission) GATHERER(length, TcLength) GATHERER(groups, TcGroups) GATHERER(value, TcValue)
+  GATHERER(emission, TcEmission)                                                                                       \
+  GATHERER(length, TcLength) GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(count, TcCount)
 #else
 #define TC_GATHERERS(GATHERER)                                                                                         \
   GATHERER(emission, TcEmission)                                                                                       \
-  GATHERER(length, TcLength) GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(sampled, TcSampled)
+  GATHERER(length, TcLength)                                                                                           \
+  GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(count, TcCount) GATHERER(sampled, TcSampled)
 #endif
 
 enum {

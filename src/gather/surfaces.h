@@ -15,6 +15,7 @@ typedef struct TcLayers {
   /* If the depth is wanted: the optical depth that is missing until alpha is one half, ∞ once it is; the depth where it
    * is, ∞ until then; the depth where the stretch under way begins. */
   TcVec missing, depth, position;
+  TcVec normal[3]; /* of the surface at that depth; 0: it lies at none */
   TcMask entering; /* lanes that set out from the shell */
   int below[TC_LANES];
 } TcLayers;
@@ -25,6 +26,8 @@ TC_INLINE void tc_layers_begin(TcLayers *layers) {
   layers->veil = tc_set(1);
   layers->missing = tc_set((TcReal)0.69314718055994530942);
   layers->depth = layers->position = layers->low;
+  for (int k = 0; k < 3; ++k)
+    layers->normal[k] = tc_set(0);
   layers->entering = tc_none();
 }
 
@@ -41,14 +44,23 @@ TC_INLINE void tc_layers_descend(TcLayers *layers, TcMask mask, TcVec a, TcVec a
       tc_select(half, tc_set((TcReal)INFINITY), tc_select(mask, layers->missing - depth, layers->missing));
 }
 
-/* The lanes of `mask` meet surfaces of these opacities at this depth. */
-TC_NOINLINE void tc_layers_step(TcLayers *layers, TcMask mask, const TcVec *opacity, const TcVec *depth) {
+/* What lanes meet. */
+typedef struct TcMeeting {
+  TcVec color[3], opacity;
+  TcVec normal[3]; /* if it is wanted: a unit vector towards the eye */
+} TcMeeting;
+
+/* The lanes of `mask` meet surfaces at this depth. */
+TC_NOINLINE void tc_layers_step(TcLayers *layers, TcMask mask, const TcMeeting *meeting, const TcVec *depth) {
   for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
     const int l = __builtin_ctz(lanes);
-    const double alpha = (double)TC_AT(*opacity, l), missing = (double)TC_AT(layers->missing, l), more = -log1p(-alpha);
+    const double alpha = (double)TC_AT(meeting->opacity, l), missing = (double)TC_AT(layers->missing, l),
+                 more = -log1p(-alpha);
     const bool half = missing < INFINITY && (alpha >= 0.5 || missing < more);
     if (half)
       TC_AT(layers->depth, l) = TC_AT(*depth, l);
+    for (int k = 0; half && k < 3; ++k)
+      TC_AT(layers->normal[k], l) = TC_AT(meeting->normal[k], l);
     TC_AT(layers->missing, l) = (TcReal)(half ? INFINITY : missing - more);
   }
 }
@@ -136,15 +148,20 @@ static void tc_surface_gradient(const TcGatherJob *job, const TcPassage *passage
   tc_cell_gradient(position, value, gradient, &six_volumes);
 }
 
-/* What lanes meet. */
-typedef struct TcMeeting {
-  TcVec color[3], opacity;
-} TcMeeting;
-
 TC_INLINE void tc_meet(TcMeeting *meeting, int l, const double color[3], double opacity) {
   for (int k = 0; k < 3; ++k)
     TC_AT(meeting->color[k], l) = (TcReal)color[k];
   TC_AT(meeting->opacity, l) = (TcReal)opacity;
+}
+
+/* Keeps the normal of a surface that lane l meets, given of any length; 0 if it has none. */
+static void tc_meet_normal(const TcPacket *walk, int l, const double normal[3], TcMeeting *meeting) {
+  double length = 0, along = 0;
+  for (int k = 0; k < 3; ++k)
+    length += normal[k] * normal[k], along += normal[k] * TC_AT(walk->along[k], l);
+  length = along > 0 ? -sqrt(length) : sqrt(length);
+  for (int k = 0; k < 3; ++k)
+    TC_AT(meeting->normal[k], l) = (TcReal)(length != 0 ? normal[k] / length : 0);
 }
 
 /* The shares of light that arrive at `fraction` of the way that lane l went through a cell; NULL: all of it. */
@@ -188,10 +205,12 @@ static void tc_meet_isosurface(const TcGatherJob *job, const TcPassage *passage,
   double color[3] = {surface->color[0], surface->color[1], surface->color[2]}, gradient[3];
   if (passage->partial)
     fraction = (double)TC_AT(passage->from, l) + fraction * (double)(TC_AT(passage->to, l) - TC_AT(passage->from, l));
-  if (job->surfaces->lighting) {
+  if (job->surfaces->lighting || job->surfaces->normal)
     tc_surface_gradient(job, passage, l, fraction, gradient);
+  if (job->surfaces->normal)
+    tc_meet_normal(passage->walk, l, gradient, meeting);
+  if (job->surfaces->lighting)
     tc_meet_light(job, passage, l, fraction, gradient, rises, color);
-  }
   tc_meet(meeting, l, color, surface->opacity);
 }
 
@@ -210,7 +229,36 @@ static void tc_meet_slice(const TcGatherJob *job, const TcPassage *passage, cons
   while (i < job->surfaces->slice_count - 1 && TC_AT(passage->walk->slice[i], l) != TC_AT(layers->slice, l))
     ++i;
   const TcOptics optics = tc_surface_optics(job, passage, l, s);
+  if (job->surfaces->normal)
+    tc_meet_normal(passage->walk, l, job->surfaces->slice[i].normal, meeting);
   tc_meet(meeting, l, optics.color, job->surfaces->slice_opacity[i]);
+}
+
+/* The part of a pixel that the edges of a face cover, about a pixel wide, for a ray along `along` that meets the face
+ * at this distance from where it starts, by the ray's distance from the nearest of the three lines. */
+static double tc_edge_coverage(const TcSurfaces *surfaces, const double along[3], double distance,
+                               const double position[3][3], const double barycentric[3]) {
+  double beside[3][3], nearest = INFINITY;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      beside[i][k] = 0; /* from the hit to the vertex */
+      for (int j = 0; j < 3; ++j)
+        beside[i][k] += barycentric[j] * (position[i][k] - position[j][k]);
+    }
+    const double away = tc_dot(beside[i], along);
+    for (int k = 0; k < 3; ++k)
+      beside[i][k] -= away * along[k];
+  }
+  for (int i = 0; i < 3; ++i) {
+    const double *a = beside[i], *b = beside[(i + 1) % 3], edge[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    double area[3];
+    tc_cross(a, b, area);
+    const double length = sqrt(tc_dot(edge, edge));
+    nearest = fmin(nearest, length > 0 ? sqrt(tc_dot(area, area)) / length : sqrt(tc_dot(a, a)));
+  }
+  const TcView *view = surfaces->view;
+  const double size = surfaces->pixel * (view->orthographic ? 1 : distance * tc_dot(along, view->forward));
+  return nearest < size ? 1 - nearest / size : 0;
 }
 
 /* Lane l meets the boundary where the scalar is s, at the face where it enters a cell or at the one where it leaves it.
@@ -221,7 +269,7 @@ static void tc_meet_boundary(const TcGatherJob *job, const TcPassage *passage, i
   double color[3], position[3][3], edge[2][3], normal[3];
   const TcOptics optics = tc_surface_optics(job, passage, l, s);
   memcpy(color, boundary->colored ? boundary->color : optics.color, sizeof color);
-  if (job->surfaces->lighting) {
+  if (job->surfaces->lighting || job->surfaces->normal || boundary->edges) {
     for (int k = 0; k < 3; ++k) {
       const uint32_t id = enter ? TC_AT(passage->entry->id[k], l) : TC_AT(passage->walk->v[k].id, l);
       tc_volume_vertex(job->values->volume, id, position[k]);
@@ -229,10 +277,26 @@ static void tc_meet_boundary(const TcGatherJob *job, const TcPassage *passage, i
     for (int k = 0; k < 3; ++k)
       edge[0][k] = position[1][k] - position[0][k], edge[1][k] = position[2][k] - position[0][k];
     tc_cross(edge[0], edge[1], normal);
+    if (job->surfaces->normal)
+      tc_meet_normal(passage->walk, l, normal, meeting);
+  }
+  if (job->surfaces->lighting) {
     double toward = 0;
     for (int k = 0; k < 3; ++k)
       toward -= normal[k] * TC_AT(passage->walk->along[k], l);
     tc_meet_light(job, passage, l, enter ? 0 : 1, normal, toward < 0, color);
+  }
+  if (boundary->edges) {
+    const TcPacket *walk = passage->walk;
+    const TcVec *weight = enter ? passage->entry->barycentric : walk->at.barycentric;
+    const double along[3] = {TC_AT(walk->along[0], l), TC_AT(walk->along[1], l), TC_AT(walk->along[2], l)},
+                 barycentric[3] = {(double)TC_AT(weight[0], l), (double)TC_AT(weight[1], l),
+                                   (double)TC_AT(weight[2], l)},
+                 depth = (double)(enter ? TC_AT(passage->entry->z, l) : TC_AT(walk->at.z, l));
+    const double coverage = tc_edge_coverage(job->surfaces, along, depth + TC_AT(walk->start, l),
+                                             (const double(*)[3])position, barycentric);
+    for (int k = 0; k < 3; ++k)
+      color[k] += coverage * (boundary->edge_color[k] - color[k]);
   }
   tc_meet(meeting, l, color, boundary->opacity);
 }

@@ -34,6 +34,17 @@ static double depth_of(const TcGathered *g, int i) {
   return g->sums[5] > 0 ? ldexp(g->sums[4] / g->sums[5], g->exponent) : INFINITY;
 }
 
+/* Of several samples the normals are added up. */
+static double normal_of(const TcGathered *g, int i) {
+  const double *n = g->sums + 6, length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  return length > 0 ? n[i] / length : 0;
+}
+
+static double cells_of(const TcGathered *g, int i) {
+  (void)i;
+  return *g->cells;
+}
+
 const TcChannel tc_channels[TC_CHANNELS] = {
     {{TETCAST_CHANNEL_RADIANCE, .name = "radiance", .file_name = "radiance", .of_groups = 1, .needs_coefficients = 1,
       .description = "radiance, in the emission's unit times length"},
@@ -44,18 +55,24 @@ const TcChannel tc_channels[TC_CHANNELS] = {
     {{TETCAST_CHANNEL_TRANSMITTANCE, .name = "transmittance", .file_name = "transmittance", .of_groups = 1,
       .needs_coefficients = 1, .description = "exp(-optical depth)"},
      transmittance_of},
-    {{TETCAST_CHANNEL_PATH_LENGTH, .name = "path_length", .file_name = "path_length", .needs_coefficients = 1,
-      .description = "length of the ray in cells, in the mesh's unit"},
+    {{TETCAST_CHANNEL_PATH_LENGTH, .name = "path_length", .file_name = "path_length", .components = 1,
+      .needs_coefficients = 1, .description = "length of the ray in cells, in the mesh's unit"},
      path_length_of},
-    {{TETCAST_CHANNEL_ERROR, .name = "error", .file_name = "error",
+    {{TETCAST_CHANNEL_ERROR, .name = "error", .file_name = "error", .components = 1,
       .description = "bound on the error of red, green, blue and alpha"},
      error_of},
-    {{TETCAST_CHANNEL_VALUE, .name = "value", .file_name = "value", .needs_blend = 1,
+    {{TETCAST_CHANNEL_VALUE, .name = "value", .file_name = "value", .components = 1, .needs_blend = 1,
       .description = "value along the ray in a blend mode, NaN: it meets nothing"},
      value_of},
-    {{TETCAST_CHANNEL_DEPTH, .name = "depth", .file_name = "Z", .needs_composite = 1,
+    {{TETCAST_CHANNEL_DEPTH, .name = "depth", .file_name = "Z", .components = 1, .needs_composite = 1,
       .description = "distance at which alpha exceeds 1/2, or of the first surface that is half opaque"},
      depth_of},
+    {{TETCAST_CHANNEL_NORMAL, .name = "normal", .file_name = "N", .components = 3, .needs_composite = 1,
+      .description = "normal of the surface at which the depth lies, unit vector towards the eye, else 0"},
+     normal_of},
+    {{TETCAST_CHANNEL_CELLS, .name = "cells", .file_name = "cells", .components = 1,
+      .description = "how many cells the ray crosses"},
+     cells_of},
 };
 
 void tc_color_value(const TcPieces *colors, double value, double alpha, double rgba[4]) {

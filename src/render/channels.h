@@ -8,12 +8,13 @@
 #include "optics/transfer.h"
 #include "volume/coefficients.h"
 
-enum { TC_CHANNELS = 7 };
+enum { TC_CHANNELS = 9 };
 
 /* What a pixel's values are made from. */
 typedef struct TcGathered {
   /* The sums that its rays have gathered (gather/emission.h, coefficients.h, value.h), as means over its samples. */
   const double *sums;
+  const double *cells;                /* the number of cells that they have crossed; NULL: not counted */
   const TcCoefficients *coefficients; /* NULL with a transfer function or a blend mode */
   const TcPieces *colors;             /* the colours of values in a blend mode; NULL without one */
   int value_exponent;                 /* in a blend mode: values are stored times 2^−value_exponent */
@@ -25,7 +26,7 @@ typedef struct TcGathered {
 
 typedef struct TcChannel {
   TetcastChannelInfo info;
-  /* A pixel's value of group i, or with i = 0 its only value. */
+  /* A pixel's value of group i, its component i, or with i = 0 its only value. */
   double (*value)(const TcGathered *gathered, int i);
 } TcChannel;
 

@@ -82,19 +82,26 @@ void tc_frame_recolor(TetcastFrame *frame, const TcPieces *colors) {
   }
 }
 
-double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, TcGathered *gathered) {
+double tc_frame_put(TetcastFrame *frame, int64_t x, int64_t y, const double rgba[4]) {
   char *row = (char *)frame->pixels + y * frame->row_stride;
+  if (frame->type == TETCAST_TYPE_FLOAT64) {
+    memcpy(row + x * 4 * (int64_t)sizeof(double), rgba, 4 * sizeof(double));
+    return 0;
+  }
+  const float pixel[4] = {(float)rgba[0], (float)rgba[1], (float)rgba[2], (float)rgba[3]};
+  memcpy(row + x * 4 * (int64_t)sizeof(float), pixel, sizeof pixel);
+  double rounding = 0;
+  for (int k = 0; k < 4; ++k)
+    rounding = fmax(rounding, fabs((double)pixel[k] - rgba[k]));
+  return rounding;
+}
+
+double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, TcGathered *gathered) {
   double rgba[4];
   gathered->single = frame->type == TETCAST_TYPE_FLOAT32; /* so that colouring anew gives the same */
   gathered->error = tc_gathered_pixel(gathered, rgba);
-  if (frame->type == TETCAST_TYPE_FLOAT64) {
-    memcpy(row + x * 4 * (int64_t)sizeof(double), rgba, 4 * sizeof(double));
-  } else {
-    const float pixel[4] = {(float)rgba[0], (float)rgba[1], (float)rgba[2], (float)rgba[3]};
-    memcpy(row + x * 4 * (int64_t)sizeof(float), pixel, sizeof pixel);
-    double rounding = 0;
-    for (int k = 0; k < 4; ++k)
-      rounding = fmax(rounding, fabs((double)pixel[k] - rgba[k]));
+  const double rounding = tc_frame_put(frame, x, y, rgba);
+  if (gathered->single) {
     gathered->error += rounding;
     if (gathered->error > 0)
       gathered->error = (double)nextafterf((float)gathered->error, INFINITY);

@@ -257,8 +257,8 @@ typedef struct Source {
   double *sums;                             /* [pixel][job->sums]: where what the rays gather is added */
 } Source;
 
-/* A ray's destination is the pixel that it adds to. In single precision it names the pixel's sample as well, so that
- * the ray can be walked again. */
+/* A ray's destination is the pixel that it adds to. In single precision it names the pixel's sample as well, or where
+ * it is among given samples, so that the ray can be walked again. */
 #define DESTINATION(pixel, sample) ((int64_t)(sample) << 32 | (pixel))
 #define PIXEL_OF(destination)      ((destination)&UINT32_MAX)
 
@@ -423,6 +423,8 @@ static void place_rays(const TcJob *job, const TcGround *ground, const TcWide *s
     tc_slice(job->surfaces, placed);
   if (stop)
     tc_stop(stop, radius, job->interval_error, placed);
+  if (job->start)
+    placed->doubt += tc_set_wide(job->interval_error);
   left_out &= ~placed->lanes;
   for (; TC_UNLIKELY(job->coefficients != NULL) && left_out; left_out &= left_out - 1) {
     double *of_ray = sums + PIXEL_OF(placed->destination[__builtin_ctz(left_out)]) * job->sums;
@@ -446,15 +448,24 @@ typedef struct Tile {
   double *sums;
 } Tile;
 
-/* The distances at which the rays through places of the grid of samples stop, scaled. */
-TC_NOINLINE void find_stops(const TcJob *job, const TcWide *column, const TcWide *row, unsigned lanes, TcWide *stop) {
-  *stop = tc_set_wide(0);
+/* The distances of `of` for the rays through places of the grid of samples, scaled. */
+TC_NOINLINE void find_distances(const TcJob *job, const TetcastArray *of, const TcWide *column, const TcWide *row,
+                                unsigned lanes, TcWide *result) {
+  *result = tc_set_wide(0);
   for (; lanes; lanes &= lanes - 1) {
     const int l = __builtin_ctz(lanes);
     const int64_t x = (int64_t)TC_AT(*column, l) / job->samples_x, y = (int64_t)TC_AT(*row, l) / job->samples_y;
-    const double distance = tc_array_double(job->stop, tc_array_stride(job->stop, 1), y * job->width + x, 0);
-    TC_AT(*stop, l) = ldexp(distance, -job->shell->volume->exponent);
+    const double distance = tc_array_double(of, tc_array_stride(of, 1), y * job->width + x, 0);
+    TC_AT(*result, l) = ldexp(distance, -job->shell->volume->exponent);
   }
+}
+
+/* Has the rays through places of the grid of samples count from where the job says. */
+TC_NOINLINE void begin_at_start(const TcJob *job, const TcWide *column, const TcWide *row, TcPlaced *placed) {
+  TcWide *begin = &placed->lines.begin;
+  find_distances(job, job->start, column, row, placed->lanes, begin);
+  for (int l = 0; l < TC_LANES; ++l)
+    TC_AT(*begin, l) = TC_AT(*begin, l) > 0 ? TC_AT(*begin, l) : 0;
 }
 
 /* Places the rays through one point of the grid of samples in each lane. */
@@ -474,7 +485,9 @@ static void place_samples(const TcJob *job, const TcGround *ground, const TcWide
   tc_view_lines(&job->view, &u, &v, lines);
   TcWide stop;
   if (job->stop)
-    find_stops(job, column, row, placed->lanes, &stop);
+    find_distances(job, job->stop, column, row, placed->lanes, &stop);
+  if (job->start)
+    begin_at_start(job, column, row, placed);
   place_rays(job, ground, job->stop ? &stop : NULL, sums, placed);
 }
 
@@ -510,27 +523,9 @@ static void place_next(Tile *tile) {
   tile->x += PACKET_X;
 }
 
-static bool next_of_tile(void *user, TcQueue *queue) {
-  Tile *tile = user;
-  if (TC_SINGLE && tile->state->again_count > AGAIN - (PACKETS + TC_QUEUE) * TC_LANES)
-    return false; /* as there is no room for more, these rays come first */
-  while (!tile->placed->lanes && tile->x < tile->x1)
-    place_next(tile);
-  if (!tile->placed->lanes)
-    return false;
-  tc_enqueue(tile->placed, queue);
-  return true;
-}
-
 #if TC_SINGLE
-/* Walks the rays again, in double precision, for which single precision would not do. */
-static bool walk_again(const Tile *tile, State *state, TcWorker *worker, double *sums) {
-  const TcJob *job = tile->job;
-  for (int i = 0; i < state->again_count; ++i) {
-    TcSample *again = &state->again[i];
-    again->x = tile->x0 + again->pixel % (tile->x1 - tile->x0);
-    again->y = tile->y0 + again->pixel / (tile->x1 - tile->x0);
-  }
+/* Walks the rays of state->again once more, in double precision, as single precision would not do for them. */
+static bool walk_again(const TcJob *job, State *state, TcWorker *worker, double *sums) {
   void *const mine = worker->state;
   worker->state = worker->precise_state;
   const bool ok = state->again_count == 0 ||
@@ -540,7 +535,35 @@ static bool walk_again(const Tile *tile, State *state, TcWorker *worker, double 
   state->again_count = 0;
   return ok;
 }
+
+/* Whether there may be no room for the rays of those packets that may end before others are taken. */
+static bool again_is_full(const State *state) {
+  return state->again_count > AGAIN - (PACKETS + TC_QUEUE) * TC_LANES;
+}
+
+static bool walk_again_of_tile(const Tile *tile, State *state, TcWorker *worker, double *sums) {
+  for (int i = 0; i < state->again_count; ++i) {
+    TcSample *again = &state->again[i];
+    again->x = tile->x0 + again->pixel % (tile->x1 - tile->x0);
+    again->y = tile->y0 + again->pixel / (tile->x1 - tile->x0);
+  }
+  return walk_again(tile->job, state, worker, sums);
+}
+#else
+#define again_is_full(state) false
 #endif
+
+static bool next_of_tile(void *user, TcQueue *queue) {
+  Tile *tile = user;
+  if (again_is_full(tile->state))
+    return false; /* these rays come first */
+  while (!tile->placed->lanes && tile->x < tile->x1)
+    place_next(tile);
+  if (!tile->placed->lanes)
+    return false;
+  tc_enqueue(tile->placed, queue);
+  return true;
+}
 
 static bool render_tile(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorker *worker,
                         double *sums) {
@@ -560,18 +583,18 @@ static bool render_tile(const TcJob *job, int64_t x0, int64_t y0, int64_t x1, in
     if (!run_packets(job, state, worker, &source))
       return false;
 #if TC_SINGLE
-    if (!walk_again(&tile, state, worker, sums))
+    if (!walk_again_of_tile(&tile, state, worker, sums))
       return false;
 #endif
   } while (tile.x < tile.x1);
   return true;
 }
 
-/* ── given rays of a picture, which are walked again ── */
+/* ── given rays of a picture ── */
 
 typedef struct Samples {
   const TcJob *job;
-  const TcGround *ground;
+  const State *state;
   TcPlaced *placed;
   const TcSample *samples;
   int64_t count, next;
@@ -587,15 +610,17 @@ static void place_some(Samples *some) {
     const TcSample *s = &some->samples[some->next < some->count ? some->next : 0];
     TC_AT(column, l) = (double)(s->x * job->samples_x + s->sample % job->samples_x);
     TC_AT(row, l) = (double)(s->y * job->samples_y + s->sample / job->samples_x);
-    placed->destination[l] = s->pixel;
+    placed->destination[l] = DESTINATION(s->pixel, s - some->samples);
     if (some->next++ < some->count)
       placed->lanes |= 1U << l;
   }
-  place_samples(job, some->ground, &column, &row, some->sums, placed);
+  place_samples(job, &some->state->ground, &column, &row, some->sums, placed);
 }
 
 static bool next_of_samples(void *user, TcQueue *queue) {
   Samples *some = user;
+  if (again_is_full(some->state))
+    return false;
   while (!some->placed->lanes && some->next < some->count)
     place_some(some);
   if (!some->placed->lanes)
@@ -607,9 +632,19 @@ static bool next_of_samples(void *user, TcQueue *queue) {
 static bool render_samples(const TcJob *job, const TcSample *samples, int64_t count, TcWorker *worker, double *sums) {
   State *state = prepare(job, worker);
   Samples some = {
-      .job = job, .ground = &state->ground, .placed = &state->placed, .samples = samples, .count = count, .sums = sums};
+      .job = job, .state = state, .placed = &state->placed, .samples = samples, .count = count, .sums = sums};
   const Source source = {next_of_samples, &some, sums};
-  return run_packets(job, state, worker, &source);
+  do {
+    if (!run_packets(job, state, worker, &source))
+      return false;
+#if TC_SINGLE
+    for (int i = 0; i < state->again_count; ++i) /* they are told by their numbers so far */
+      state->again[i] = samples[state->again[i].sample];
+    if (!walk_again(job, state, worker, sums))
+      return false;
+#endif
+  } while (some.next < count);
+  return true;
 }
 
 /* ── any rays ── */

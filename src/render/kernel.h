@@ -60,8 +60,9 @@ typedef struct TcJob {
   /* The following are of pictures only, not of rays that are cast one by one. */
   TcView view;
   int64_t width, height;
-  int samples_x, samples_y; /* a pixel has a grid of so many rays */
-  const TetcastArray *stop; /* [height][width]: where rays end, in the mesh's unit of length; NULL: they don't */
+  int samples_x, samples_y;  /* a pixel has a grid of so many rays */
+  const TetcastArray *stop;  /* [height][width]: where rays end, in the mesh's unit of length; NULL: they don't */
+  const TetcastArray *start; /* [height][width]: from where on they count; NULL: from where they begin */
 } TcJob;
 
 /* What each worker has for itself. */

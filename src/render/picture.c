@@ -6,8 +6,10 @@
 
 #include "base/cpu.h"
 #include "base/parallel.h"
+#include "base/vec3.h"
 #include "optics/sampled.h"
-#include "render/render.h"
+#include "render/outline.h"
+#include "render/work.h"
 
 /* ── the choice among kernels ── */
 
@@ -77,7 +79,7 @@ static unsigned association_of(const TcRows *values) {
 static void see_through(const TcRows *values, const TcPieces *pieces, unsigned more, TcJob *job) {
   job->values = values;
   job->pieces = pieces;
-  job->sums = more & TC_BOUND ? 5 : job->surfaces && job->surfaces->depth ? 6 : 4;
+  job->sums = more & TC_BOUND ? 5 : !job->surfaces || !job->surfaces->depth ? 4 : job->surfaces->normal ? 9 : 6;
   job->tolerance = tc_tolerance_begin(pieces, 0, 0);
   const bool one_color = pieces->one_color && !job->lights && !job->second;
   const unsigned needed =
@@ -165,28 +167,26 @@ bool tc_worker_failed(const TcWorker *worker) {
 
 /* ── a frame ── */
 
-typedef struct Working {
-  TcWorker worker;
-  double *sums; /* [TC_TILE²][job.sums]: of the tile under way */
-  double error; /* the largest of the pixels' bounds so far */
-} Working;
+/* Counts the cells that the rays of a tile cross, whatever they hide, on a walk of its own. */
+static bool count_cells(const TcRender *render, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorking *working) {
+  const int64_t segments = working->worker.segments, pixels = (x1 - x0) * (y1 - y0);
+  const double samples = render->count.samples_x * render->count.samples_y;
+  const TcJob *job = &render->job;
+  TcWorker *worker = &working->worker;
+  void *const state = worker->state;
+  memset(working->cells, 0, (size_t)pixels * sizeof *working->cells);
+  if (job->precise)
+    worker->state = worker->precise_state;
+  const bool ok =
+      (job->precise ? job->precise : render->kernels)->tile(&render->count, x0, y0, x1, y1, worker, working->cells);
+  worker->state = state;
+  worker->segments = segments; /* which are those of the picture */
+  for (int64_t i = 0; i < pixels; ++i)
+    working->cells[i] /= samples;
+  return ok;
+}
 
-typedef struct Render {
-  TcJob job, precise;
-  const TetcastScene *scene;
-  TetcastFrame *frame;
-  const TcIsaKernels *kernels;
-  TcScreen screen;
-  TcSurfaces surfaces;
-  TcLights lights;
-  TcSecond second; /* of a transfer function of one dimension, for kernels that expect two */
-  Working *workers;
-  bool bounded; /* a bound on the error is gathered as well */
-  bool plain;   /* the sums are the frame's pixels as they are, and there are no channels */
-  int64_t tiles_x, tiles_y;
-} Render;
-
-static bool render_tile(const Render *render, int64_t tile_x, int64_t tile_y, Working *working) {
+static bool render_tile(const TcRender *render, int64_t tile_x, int64_t tile_y, TcWorking *working) {
   const TcJob *job = &render->job;
   const int64_t x0 = tile_x * TC_TILE, y0 = tile_y * TC_TILE;
   const int64_t x1 = x0 + TC_TILE < job->width ? x0 + TC_TILE : job->width,
@@ -194,7 +194,8 @@ static bool render_tile(const Render *render, int64_t tile_x, int64_t tile_y, Wo
   const int64_t numbers = (x1 - x0) * (y1 - y0) * job->sums;
   const double samples = job->samples_x * job->samples_y;
   memset(working->sums, 0, (size_t)numbers * sizeof *working->sums);
-  if (!render->kernels->tile(job, x0, y0, x1, y1, &working->worker, working->sums))
+  if (!render->kernels->tile(job, x0, y0, x1, y1, &working->worker, working->sums) ||
+      (render->counted && !count_cells(render, x0, y0, x1, y1, working)))
     return false;
   for (int64_t i = 0; samples > 1 && i < numbers; ++i)
     working->sums[i] /= samples;
@@ -206,16 +207,11 @@ static bool render_tile(const Render *render, int64_t tile_x, int64_t tile_y, Wo
     }
     return true;
   }
-  TcGathered gathered = {.sums = working->sums,
-                         .bounded = render->bounded,
-                         .coefficients = job->coefficients,
-                         .exponent = job->shell->volume->exponent};
-  if (job->blend) {
-    gathered.colors = &render->scene->transfer->pieces;
-    gathered.value_exponent = job->values->exponent + (job->blend == TETCAST_BLEND_ADDITIVE ? gathered.exponent : 0);
-  }
+  TcGathered gathered = tc_render_gathered(render);
+  gathered.sums = working->sums;
+  gathered.cells = working->cells;
   for (int64_t y = y0; y < y1; ++y) {
-    for (int64_t x = x0; x < x1; ++x, gathered.sums += job->sums) {
+    for (int64_t x = x0; x < x1; ++x, gathered.sums += job->sums, ++gathered.cells) {
       const double bound = tc_frame_store(render->frame, x, y, &gathered);
       if (!(bound <= working->error))
         working->error = bound;
@@ -224,36 +220,18 @@ static bool render_tile(const Render *render, int64_t tile_x, int64_t tile_y, Wo
   return true;
 }
 
-/* The number made of the bits 0, 2, 4, … of i: the place along one axis of the i-th square of Morton's curve. */
-static int64_t even_bits(int64_t i) {
-  int64_t result = 0;
-  for (int bit = 0; i >> 2 * bit; ++bit)
-    result |= (i >> 2 * bit & 1) << bit;
-  return result;
-}
-
 /* Renders tiles `begin` to `end` along Morton's curve. As these are neighbours, their rays meet many of the same cells,
  * which are still in the cache. */
 static bool render_tiles(void *data, int64_t begin, int64_t end, int worker) {
-  Render *render = data;
+  TcRender *render = data;
   for (int64_t i = begin; i < end; ++i) {
-    const int64_t x = even_bits(i), y = even_bits(i >> 1);
+    const int64_t x = tc_even_bits(i), y = tc_even_bits(i >> 1);
     if (x >= render->tiles_x || y >= render->tiles_y)
       continue;
     if (!render_tile(render, x, y, &render->workers[worker]))
       return false;
   }
   return true;
-}
-
-/* Chooses a grid of exactly `samples` points, as near to square as its divisors allow, and not higher than wide. */
-static void sample_grid(int samples, int *x, int *y) {
-  *y = 1;
-  for (int i = 2; i * i <= samples; ++i) {
-    if (samples % i == 0)
-      *y = i;
-  }
-  *x = samples / *y;
 }
 
 /* ── vertices on the screen ── */
@@ -312,7 +290,7 @@ static void keep_vertices(const TetcastScene *scene, const TcJob *job, bool sing
  * did. The bound leaves out two things, with which single precision isn't used: the borders of holes in the field, at
  * which what is seen jumps, and meshes that fold over themselves, where paths of rays change by leaps. */
 static bool allow_single(const TetcastScene *scene, const TetcastRenderDesc *desc, const TcScreen *setup,
-                         Render *render) {
+                         TcRender *render) {
   const TcIsaKernels *kernels = tc_single_kernels_for(desc->isa);
   TcJob *job = &render->job;
   double values;
@@ -345,7 +323,7 @@ static double brightest_of(const TcJob *job) {
 
 /* Decides whether vertices are projected and which precision is used, and sets the tolerance and the error bounds'
  * terms accordingly. */
-static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *desc, bool measured, Render *render) {
+static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *desc, bool measured, TcRender *render) {
   TcJob *job = &render->job;
   TcScreen setup;
   const int64_t rays = job->width * job->height * desc->samples;
@@ -369,29 +347,54 @@ static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *de
   return project(scene, render->kernels, &setup, job, &render->screen);
 }
 
-/* Renders all tiles, and sums up what the workers have counted. */
-static TetcastStatus run(Render *render, const TetcastProgress *progress, TetcastRenderStats *stats) {
+/* Sets up the count of cells: as the picture, but of all the mesh and without light. */
+static void plan_count(TcRender *render) {
+  TcJob *count = &render->count;
+  bool one_lane;
+  *count = render->job.precise ? render->precise : render->job; /* it takes double precision */
+  count->kernel = choose_row("count", TC_CELLS, &one_lane);
+  count->shell = &render->scene->volume->shell;
+  count->pieces = NULL;
+  count->coefficients = NULL;
+  count->surfaces = NULL;
+  count->sampler = NULL;
+  count->sums = 1;
+}
+
+/* Renders all tiles. */
+static TetcastStatus run_tiles(TcRender *render, const TetcastProgress *progress) {
+  render->tiles_x = (render->job.width + TC_TILE - 1) / TC_TILE;
+  render->tiles_y = (render->job.height + TC_TILE - 1) / TC_TILE;
+  int64_t side = 1;
+  while (side < render->tiles_x || side < render->tiles_y)
+    side *= 2;
+  return tc_parallel_for(render->scene->context, side * side, 1, render_tiles, render, progress);
+}
+
+/* Renders the frame, and sums up what the workers have counted. */
+static TetcastStatus run(TcRender *render, const TetcastRenderDesc *desc, TetcastRenderStats *stats) {
   TetcastContext *context = render->scene->context;
   const int threads = tc_context_threads(context);
   if (!tc_allocate_array(context, (void **)&render->workers, threads, sizeof *render->workers, "workers"))
     return TETCAST_ERROR_MEMORY;
   bool ok = true;
   for (int i = 0; i < threads; ++i) {
-    Working *w = &render->workers[i];
+    TcWorking *w = &render->workers[i];
     ok = tc_worker_begin(context, render->kernels, &render->job, &w->worker) && ok;
     w->sums = tc_allocate(context, TC_TILE * TC_TILE * (int64_t)render->job.sums, sizeof *w->sums);
     w->error = 0;
-    ok = ok && w->sums;
+    w->cells = render->counted ? tc_allocate(context, TC_TILE * TC_TILE, sizeof *w->cells) : NULL;
+    ok = ok && w->sums && (w->cells || !render->counted);
   }
-  render->tiles_x = (render->job.width + TC_TILE - 1) / TC_TILE;
-  render->tiles_y = (render->job.height + TC_TILE - 1) / TC_TILE;
-  int64_t side = 1;
-  while (side < render->tiles_x || side < render->tiles_y)
-    side *= 2;
-  TetcastStatus status = ok ? tc_parallel_for(context, side * side, 1, render_tiles, render, progress)
-                            : tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: workers");
+  TetcastStatus status = TETCAST_OK;
+  if (!ok)
+    status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: workers");
+  else if (desc->adaptive_coarse > 0)
+    status = tc_adaptive_run(render, desc, &stats->rays);
+  else
+    status = run_tiles(render, &desc->progress);
   for (int i = 0; i < threads; ++i) {
-    Working *w = &render->workers[i];
+    TcWorking *w = &render->workers[i];
     stats->segments += w->worker.segments;
     stats->lost += w->worker.lost;
     if (!(w->error <= stats->error))
@@ -400,6 +403,7 @@ static TetcastStatus run(Render *render, const TetcastProgress *progress, Tetcas
       status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: hits of a ray");
     tc_worker_end(context, &w->worker);
     tc_release(context, w->sums);
+    tc_release(context, w->cells);
   }
   tc_release(context, render->workers);
   return status;
@@ -408,15 +412,18 @@ static TetcastStatus run(Render *render, const TetcastProgress *progress, Tetcas
 /* Surfaces, light in the volume and a transfer function's second dimension, as far as the scene has them. Of the
  * kernels, one has white light alone, one surfaces, one the second dimension; what has more than one of these, or light
  * of a colour, takes the kernel that has all. */
-static TetcastStatus find_looks(const TetcastScene *scene, const TetcastRenderDesc *desc, bool depth, Render *render) {
+static TetcastStatus find_looks(const TetcastScene *scene, const TetcastRenderDesc *desc, bool depth, bool normal,
+                                TcRender *render) {
   TcJob *job = &render->job;
   const bool surfaces = depth || tc_scene_has_surfaces(scene), lit = tc_scene_is_lit(scene),
              rows = scene->row_count > 0;
   const bool all = (int)surfaces + (int)lit + (int)rows > 1 || (lit && !tc_light_is_gray(&scene->lighting));
   TetcastStatus status = TETCAST_OK;
   if (surfaces || all) {
-    status = tc_scene_surfaces(scene, desc->isa, &render->surfaces);
+    status = tc_scene_surfaces(scene, desc->isa, normal, &render->surfaces);
     render->surfaces.depth = depth;
+    render->surfaces.view = &job->view;
+    render->surfaces.pixel = 2 * sqrt(tc_dot(job->view.up, job->view.up)) / (double)job->height;
     job->surfaces = &render->surfaces;
   }
   render->lights = (TcLights){.width = TC_LIGHT_TINTED, .factor = 1};
@@ -434,30 +441,37 @@ static TetcastStatus find_looks(const TetcastScene *scene, const TetcastRenderDe
   return status;
 }
 
-static void forget_looks(TetcastContext *context, Render *render) {
+static void forget_looks(TetcastContext *context, TcRender *render) {
   tc_lights_clear(context, &render->lights);
   tc_second_clear(context, &render->second);
 }
 
-TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
+TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *given,
                               TetcastFrame *frame, TetcastRenderStats *stats) {
   TetcastContext *context = scene->context;
+  TetcastRenderDesc all = *given;
+  if (all.adaptive_coarse > 0 && all.adaptive_epsilon == 0) { /* no two corners differ by less: all rays are cast */
+    all.samples = all.adaptive_fine;
+    all.adaptive_coarse = 0;
+  }
+  const TetcastRenderDesc *desc = &all;
   const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
-  const bool depth = tc_frame_channel(frame, TETCAST_CHANNEL_DEPTH) != NULL;
+  const bool normal = tc_frame_channel(frame, TETCAST_CHANNEL_NORMAL) != NULL,
+             depth = normal || tc_frame_channel(frame, TETCAST_CHANNEL_DEPTH);
   const bool measured = exact && !scene->blend && !depth && !tc_scene_has_surfaces(scene) && !tc_scene_is_lit(scene) &&
                         scene->row_count == 0 &&
                         (desc->tolerance > 0 || tc_frame_channel(frame, TETCAST_CHANNEL_ERROR));
-  Render render = {.scene = scene, .frame = frame};
+  TcRender render = {.scene = scene, .frame = frame};
   TcJob *job = &render.job;
   job->width = frame->width;
   job->height = frame->height;
-  sample_grid(desc->samples, &job->samples_x, &job->samples_y);
+  tc_sample_grid(desc->samples, &job->samples_x, &job->samples_y);
   TetcastStatus status =
       tc_view_create(context, camera, scene->volume, (double)frame->width / (double)frame->height, &job->view);
   if (!status && !scene->coefficients && !scene->blend)
     status = tc_scene_prepare(scene);
   if (!status && !scene->coefficients && !scene->blend)
-    status = find_looks(scene, desc, depth, &render);
+    status = find_looks(scene, desc, depth, normal, &render);
   TcSampler *sampler = NULL;
   if (!status && !exact)
     status = tc_sampler_create(context, desc->integrator, desc->integrator_n, &sampler);
@@ -469,23 +483,29 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   job->clip = scene->clip;
   job->clip_count = scene->clip_count;
   job->stop = desc->stop;
+  job->start = desc->start;
   job->to_the_end =
       tc_frame_channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH) || tc_frame_channel(frame, TETCAST_CHANNEL_PATH_LENGTH);
   tc_job_of_scene(scene, measured, job);
   const bool one_by_one = job->one_lane || scene->volume->traversal == TETCAST_TRAVERSAL_FACES;
   render.bounded = measured;
-  render.plain = job->pieces && !depth && frame->type == TETCAST_TYPE_FLOAT64 && !measured;
+  render.counted = tc_frame_channel(frame, TETCAST_CHANNEL_CELLS) != NULL;
+  render.plain = job->pieces && !depth && !render.counted && frame->type == TETCAST_TYPE_FLOAT64 && !measured;
   render.kernels = tc_kernels_for(one_by_one ? TETCAST_ISA_SCALAR : desc->isa);
   status = plan(scene, desc, measured, &render); /* this may change to kernels in single precision */
   TetcastRenderStats sum = {.rays = frame->width * frame->height * desc->samples,
                             .isa = render.kernels->name,
                             .precision = render.kernels->precision};
+  if (!status && render.counted)
+    plan_count(&render);
   if (!status)
-    status = run(&render, &desc->progress, &sum);
+    status = run(&render, desc, &sum);
+  if (!status && scene->outlined)
+    tc_outline_draw(scene, &job->view, desc->stop, frame);
   keep_vertices(scene, job, job->precise != NULL);
   tc_sampler_destroy(sampler);
   forget_looks(context, &render);
-  if (!measured)
+  if (!measured || desc->adaptive_coarse > 0)
     sum.error = NAN;
   if (!status && stats)
     *stats = sum;

@@ -23,7 +23,8 @@ struct TetcastFrame {
 };
 
 static inline int tc_frame_depth(const TetcastFrame *frame, int channel) {
-  return tc_channels[channel].info.of_groups ? frame->groups : 1;
+  const TetcastChannelInfo *info = &tc_channels[channel].info;
+  return info->of_groups ? frame->groups : info->components;
 }
 
 static inline void *tc_frame_channel(const TetcastFrame *frame, TetcastChannel channel) {
@@ -65,7 +66,9 @@ struct TetcastScene {
   int slice_count;
   TetcastBoundary boundary; /* opacity 0: it is not seen */
   TcLighting lighting;
-  TcHalfSpace *clip; /* [clip_count]; NULL: none */
+  bool outlined;           /* the edges of the mesh's bounding box are drawn */
+  double outline_color[3]; /* in this colour */
+  TcHalfSpace *clip;       /* [clip_count]; NULL: none */
   int clip_count;
   TcPrepared *prepared;
 };
@@ -78,6 +81,8 @@ TetcastStatus tc_frame_create(TetcastContext *context, const TetcastFrameDesc *d
 void tc_frame_destroy(TetcastFrame *frame);
 /* Colours pixels by their values in a channel that the frame has. */
 void tc_frame_recolor(TetcastFrame *frame, const TcPieces *colors);
+/* Stores a pixel's red, green, blue and alpha. Returns how far rounding to the frame's type has moved any of them. */
+double tc_frame_put(TetcastFrame *frame, int64_t x, int64_t y, const double rgba[4]);
 /* Stores a pixel and its values of all channels. Returns a bound on its error, rounding to the frame's type included;
  * NaN: not known. */
 double tc_frame_store(TetcastFrame *frame, int64_t x, int64_t y, TcGathered *gathered);
@@ -98,8 +103,9 @@ bool tc_scene_has_surfaces(const TetcastScene *scene);
 TcLighting tc_lighting_of(const TetcastShadingDesc *desc);
 /* The scene's isosurfaces as its field is stored. */
 TetcastStatus tc_scene_scale_isosurfaces(const TetcastScene *scene, TetcastIsosurface **scaled);
-/* What kernels are to know of surfaces, once the scene is prepared. */
-TetcastStatus tc_scene_surfaces(const TetcastScene *scene, TetcastIsa isa, TcSurfaces *surfaces);
+/* What kernels are to know of surfaces, once the scene is prepared. `normals` tells whether these are wanted, light or
+ * not. */
+TetcastStatus tc_scene_surfaces(const TetcastScene *scene, TetcastIsa isa, bool normals, TcSurfaces *surfaces);
 /* Whether light falls on the volume. */
 bool tc_scene_is_lit(const TetcastScene *scene);
 /* The light in the volume as this camera sees it, for tc_lights_clear(), once the scene is prepared; `width` is that of
@@ -123,7 +129,7 @@ TetcastStatus tc_scene_prepare(const TetcastScene *scene);
  * scene had before, or NULL. */
 void *tc_scene_swap_vertices(const TetcastScene *scene, bool single, void *vertices);
 
-TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
+TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *given,
                               TetcastFrame *frame, TetcastRenderStats *stats);
 
 /* Colour map `name` over [low, high] with an extinction that makes a good first picture of the scene's volume and

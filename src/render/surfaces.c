@@ -81,14 +81,15 @@ static void take_largest(const TcLighting *lighting, const double color[3], TcSu
   }
 }
 
-TetcastStatus tc_scene_surfaces(const TetcastScene *scene, TetcastIsa isa, TcSurfaces *surfaces) {
+TetcastStatus tc_scene_surfaces(const TetcastScene *scene, TetcastIsa isa, bool normals, TcSurfaces *surfaces) {
   const TcLighting *lighting = &scene->lighting;
   const TcPrepared *prepared = scene->prepared;
   *surfaces = (TcSurfaces){.count = scene->isosurface_count,
                            .surface = prepared->isosurfaces,
                            .lighting = lighting->surfaces ? lighting : NULL,
                            .slice_count = scene->slice_count,
-                           .boundary = scene->boundary};
+                           .boundary = scene->boundary,
+                           .normal = normals};
   for (int i = 0; i < surfaces->count; ++i)
     take_largest(surfaces->lighting, prepared->isosurfaces[i].color, surfaces);
   for (int i = 0; i < surfaces->slice_count; ++i) {
@@ -101,15 +102,20 @@ TetcastStatus tc_scene_surfaces(const TetcastScene *scene, TetcastIsa isa, TcSur
   for (int k = 0; k < 3; ++k)
     surfaces->boundary.color[k] = fmin(surfaces->boundary.color[k], TC_LARGEST_COLOR);
   take_largest(surfaces->lighting, surfaces->boundary.color, surfaces);
+  for (int k = 0; surfaces->boundary.edges && k < 3; ++k) {
+    surfaces->boundary.edge_color[k] = fmin(surfaces->boundary.edge_color[k], TC_LARGEST_COLOR);
+    surfaces->largest[k] = fmax(surfaces->largest[k], surfaces->boundary.edge_color[k]);
+  }
   for (int64_t i = 0; scene->transfer && i < scene->transfer->color_count; ++i) { /* of slices and of the boundary */
     double color[3];
     for (int k = 0; k < 3; ++k)
       color[k] = fmin(scene->transfer->color[4 * i + 1 + k], TC_LARGEST_COLOR);
     take_largest(surfaces->lighting, color, surfaces);
   }
-  if (!surfaces->lighting)
+  if (!surfaces->lighting && !normals)
     return TETCAST_OK;
-  TetcastStatus status = tc_scene_open(scene, isa, &surfaces->open, &surfaces->open_width);
+  TetcastStatus status =
+      surfaces->lighting ? tc_scene_open(scene, isa, &surfaces->open, &surfaces->open_width) : TETCAST_OK;
   if (status || surfaces->count == 0 || !lighting->smooth || scene->values->association != TETCAST_POINT)
     return status;
   return tc_scene_gradients(scene, &surfaces->smooth);

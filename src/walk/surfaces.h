@@ -9,6 +9,7 @@
 #include "optics/light.h"
 #include "volume/gradients.h"
 #include "walk/clip.h"
+#include "walk/screen.h"
 
 typedef struct TcSurfaces {
   int count;
@@ -21,7 +22,10 @@ typedef struct TcSurfaces {
   TcHalfSpace slice[TETCAST_MAX_SLICES];
   double slice_opacity[TETCAST_MAX_SLICES];
   TetcastBoundary boundary; /* opacity 0: it is not seen */
+  const TcView *view;       /* the picture's camera */
+  double pixel;             /* the height of its pixels, in perspective at the depth 1 */
   bool depth;               /* the depth at which alpha exceeds one half is wanted */
+  bool normal;              /* with `depth`: the normal of the surface that it lies at is wanted, too */
   double largest[3];        /* of all their colours, as they are seen */
 } TcSurfaces;
 

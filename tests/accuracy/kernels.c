@@ -495,14 +495,14 @@ static unsigned char *bytes_of(TetcastContext *context, const TetcastScene *scen
   assert_int_equal(tetcast_frame_create(context, &frame_desc, &frame), TETCAST_OK);
   assert_int_equal(tetcast_scene_render(scene, camera, desc, frame, stats), TETCAST_OK);
   const size_t number = WIDE * HIGH * sizeof(double);
-  unsigned char *bytes = malloc(number * (4 + 5 * (size_t)frame_desc.groups));
+  unsigned char *bytes = malloc(number * (10 + 5 * (size_t)frame_desc.groups));
   memcpy(bytes, tetcast_frame_pixels(frame), 4 * number);
   *size = 4 * number;
   for (int i = 0; tetcast_channel_info(i); ++i) {
     const TetcastChannelInfo *info = tetcast_channel_info(i);
     if (!(channels & info->channel))
       continue;
-    const size_t more = number * (info->of_groups ? (size_t)frame_desc.groups : 1);
+    const size_t more = number * (size_t)(info->of_groups ? frame_desc.groups : info->components);
     memcpy(bytes + *size, tetcast_frame_channel(frame, info->channel), more);
     *size += more;
   }

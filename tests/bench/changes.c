@@ -126,7 +126,10 @@ typedef struct Feature {
   int planes; /* 1: clipped to `oblique` */
   TetcastShade shade;
   bool shadows;
-  int rows; /* 0: a transfer function of one dimension; else of so many rows */
+  int rows;        /* 0: a transfer function of one dimension; else of so many rows */
+  int edges;       /* 1: an outline, and the boundary's triangles; 2: the boundary without its triangles */
+  bool part;       /* only the middle of rays counts */
+  double adaptive; /* rays are cast where pixels differ by so much, from every fourth pixel on; 0: everywhere */
 } Feature;
 
 /* At equal distances over the range of the scalar. */
@@ -168,6 +171,13 @@ static void set_rows(Tet *tet, const Feature *feature) {
     tetcast_transfer_function_destroy(&made[i]);
 }
 
+static void set_lines(Tet *tet, int edges) {
+  static const double black[3] = {0, 0, 0};
+  const TetcastBoundary boundary = {.opacity = 1, .colored = 1, .color = {1, 1, 1}, .edges = edges == 1};
+  must(tetcast_scene_set_boundary(tet->scene, edges ? &boundary : NULL) == TETCAST_OK, "boundary");
+  must(tetcast_scene_set_outline(tet->scene, edges == 1 ? black : NULL) == TETCAST_OK, "outline");
+}
+
 /* Its plane goes through the middle and cuts off what is next to the camera. */
 static const TetcastHalfSpace oblique = {{-0.3, 0.5, -0.8}, -0.3};
 
@@ -183,6 +193,47 @@ static TetcastField *make_field(Tet *tet, const BenchMesh *mesh, int values, dou
   TetcastField *field = NULL;
   must(tetcast_field_create(tet->context, &desc, &field) == TETCAST_OK, "field");
   return field;
+}
+
+/* The distances [2][pixels] between which rays are near the middle of what the camera sees. */
+static double *middle_of_rays(const TetcastCamera *camera, int64_t pixels) {
+  double *ends = calloc((size_t)(2 * pixels), sizeof *ends), square = 0;
+  must(ends != NULL, "no memory");
+  for (int k = 0; k < 3; k++)
+    square += (camera->target[k] - camera->eye[k]) * (camera->target[k] - camera->eye[k]);
+  for (int64_t i = 0; i < 2 * pixels; i++)
+    ends[i] = sqrt(square) + (i < pixels ? -0.1 : 0.1);
+  return ends;
+}
+
+/* Measures a picture of one feature, once more. `ends`: those of middle_of_rays(). */
+static void measure_feature(const Job *job, Tet *tet, Feature *feature, TetcastField *const fields[3],
+                            const double *ends) {
+  const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
+  const int64_t pixels = (int64_t)job->options->pixels * job->options->pixels;
+  const TetcastArray from = {ends, TETCAST_TYPE_FLOAT64, pixels, 0},
+                     to = {ends + pixels, TETCAST_TYPE_FLOAT64, pixels, 0};
+  must(tetcast_scene_set_field(tet->scene, fields[feature->values]) == TETCAST_OK, "set field");
+  if (feature->rows > 0)
+    set_rows(tet, feature);
+  else
+    tet_transfer(tet, feature->transfer);
+  set_light(tet, feature);
+  set_isosurfaces(tet, feature->isosurfaces);
+  must(tetcast_scene_set_blend(tet->scene, feature->blend) == TETCAST_OK, "set blend");
+  must(tetcast_scene_set_clip(tet->scene, &oblique, feature->planes) == TETCAST_OK, "set clip");
+  set_lines(tet, feature->edges);
+  TetcastRenderDesc desc = tetcast_render_desc_default();
+  desc.samples = feature->samples > 0 ? feature->samples : 1;
+  desc.adaptive_epsilon = feature->adaptive;
+  desc.adaptive_coarse = feature->adaptive > 0 ? 4 : 0;
+  desc.start = feature->part ? &from : NULL;
+  desc.stop = feature->part ? &to : NULL;
+  const TetcastType type = feature->type ? feature->type : TETCAST_TYPE_FLOAT64;
+  TetcastFrame *frame = tet_frame(tet, job->options->pixels, type, feature->channels);
+  tet_render(tet, &camera, NULL, frame, NULL);
+  times_add(&feature->times, measure_frame(job, tet, &camera, &desc, frame, &feature->stats));
+  tetcast_frame_destroy(&frame);
 }
 
 void job_features(const Job *job) {
@@ -222,7 +273,13 @@ void job_features(const Job *job) {
        .shadows = true},
       {.name = "two dimensions of 4 rows", .transfer = &transfer_blend, .rows = 4},
       {.name = "two dimensions of 4 rows with knots", .transfer = &transfer_soft, .rows = 4},
+      {.name = "adaptive to 0.01 from 4th pixels on", .transfer = &transfer_linear, .adaptive = 0.01},
+      {.name = "a part of each ray", .transfer = &transfer_linear, .part = true},
+      {.name = "boundary", .transfer = &clear, .edges = 2},
+      {.name = "boundary with edges and an outline", .transfer = &clear, .edges = 1},
       {.name = "channel of depth", .transfer = &transfer_linear, .channels = TETCAST_CHANNEL_DEPTH},
+      {.name = "channel of normals", .transfer = &transfer_linear, .channels = TETCAST_CHANNEL_NORMAL},
+      {.name = "channel of cells", .transfer = &transfer_linear, .channels = TETCAST_CHANNEL_CELLS},
   };
   const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
   Tet tet;
@@ -237,26 +294,11 @@ void job_features(const Job *job) {
     fields[i] = make_field(&tet, job->mesh, i, memory);
   }
   free(memory);
+  double *ends = middle_of_rays(&camera, (int64_t)job->options->pixels * job->options->pixels);
   const int count = sizeof features / sizeof *features;
   for (int round = 0; round < job->scene->rounds; round++) {
     for (int i = 0; i < count; i++) {
-      Feature *feature = &features[i];
-      must(tetcast_scene_set_field(tet.scene, fields[feature->values]) == TETCAST_OK, "set field");
-      if (feature->rows > 0)
-        set_rows(&tet, feature);
-      else
-        tet_transfer(&tet, feature->transfer);
-      set_light(&tet, feature);
-      set_isosurfaces(&tet, feature->isosurfaces);
-      must(tetcast_scene_set_blend(tet.scene, feature->blend) == TETCAST_OK, "set blend");
-      must(tetcast_scene_set_clip(tet.scene, &oblique, feature->planes) == TETCAST_OK, "set clip");
-      TetcastRenderDesc desc = tetcast_render_desc_default();
-      desc.samples = feature->samples > 0 ? feature->samples : 1;
-      const TetcastType type = feature->type ? feature->type : TETCAST_TYPE_FLOAT64;
-      TetcastFrame *frame = tet_frame(&tet, job->options->pixels, type, feature->channels);
-      tet_render(&tet, &camera, NULL, frame, NULL);
-      times_add(&feature->times, measure_frame(job, &tet, &camera, &desc, frame, &feature->stats));
-      tetcast_frame_destroy(&frame);
+      measure_feature(job, &tet, &features[i], fields, ends);
     }
   }
   Row row = job->row;
@@ -272,6 +314,7 @@ void job_features(const Job *job) {
     row.crossed = features[i].stats.segments;
     row_write(&row);
   }
+  free(ends);
   for (int i = 0; i < 3; i++) {
     tetcast_field_destroy(&fields[i]);
   }

@@ -33,7 +33,7 @@ accept render cube.vtu -o stop.png --array s --isosurface 3.1:red $down --stop-d
 accept render cube.vtu -o free.png --array s --isosurface 3.1:red $down
 same stop.png free.png 'what lies before the depth'
 refuse 2 'error and depth' render cube.vtu -o a.exr --array s --channels error,depth
-refuse 2 'only value is possible' render cube.vtu -o a.exr --array s --blend maximum --channels depth
+refuse 2 'only value and cells are possible' render cube.vtu -o a.exr --array s --blend maximum --channels depth
 refuse 2 'depth: not possible' render cube.vtu -o a.exr --emission s --channels depth
 
 # A scene makes the same picture again; the command line takes the place of its list.

@@ -7,22 +7,23 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
-#include <new>
 #include <sstream>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include <OpenImageIO/imageio.h>
 
+#include "failure.hpp"
 #include "io/floating.hpp"
 #include "output.hpp"
 
 using OIIO::ImageOutput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
+using tetcast::error_text;
+using tetcast::fail;
 
 namespace {
 
@@ -34,6 +35,7 @@ struct Extra {
   const char *name;
   const void *data; // [height][width][count]
   int count;
+  bool vector; // of X, Y, Z
 };
 
 // The frame's pixels, or the one pixel of a check.
@@ -53,34 +55,22 @@ struct Pixels {
   }
 };
 
-std::vector<Extra> extras_of(const TetcastFrame *frame) {
+void add_extra(const TetcastFrame *frame, const TetcastChannelInfo &info, std::vector<Extra> &extras) {
+  if (const void *data = tetcast_frame_channel(frame, info.channel))
+    extras.push_back(
+        {info.file_name, data, info.of_groups ? tetcast_frame_groups(frame) : info.components, info.components == 3});
+}
+
+// The channels in the order that is asked for, or in that of the table.
+std::vector<Extra> extras_of(const TetcastFrame *frame, const TetcastImageDesc *desc) {
   std::vector<Extra> extras;
   const TetcastChannelInfo *info;
-  for (int i = 0; (info = tetcast_channel_info(i)); ++i)
-    if (const void *data = tetcast_frame_channel(frame, info->channel))
-      extras.push_back({info->file_name, data, info->of_groups ? tetcast_frame_groups(frame) : 1});
+  const bool listed = desc && desc->channels;
+  for (int k = 0; k < (listed ? desc->channel_count : 1); ++k)
+    for (int i = 0; (info = tetcast_channel_info(i)); ++i)
+      if (!listed || info->channel == desc->channels[k])
+        add_extra(frame, *info, extras);
   return extras;
-}
-
-// One error, already sent to the context.
-struct Failure {
-  TetcastStatus status;
-};
-
-[[noreturn]] void fail(TetcastContext *context, TetcastStatus status, const char *path, const std::string &reason) {
-  tetcast_context_error(context, status, "cannot write image '%s': %s", path, reason.c_str());
-  throw Failure{status};
-}
-
-std::string error_text(int error) {
-  switch (error) {
-  case ENOENT:
-    return "its folder does not exist";
-  case EINVAL:
-    return "it exists and is not a regular file";
-  default:
-    return std::strerror(error);
-  }
 }
 
 std::string extension_of(const std::string &path) {
@@ -301,6 +291,8 @@ bool write_rows(ImageOutput &output, const Pixels &pixels, const double backgrou
 std::string channel_name(const Extra &extra, int group) {
   if (extra.count == 1)
     return extra.name;
+  if (extra.vector)
+    return extra.name + std::string(".") + "XYZ"[group];
   const std::string number = std::to_string(group), last = std::to_string(extra.count - 1);
   return extra.name + ("." + std::string(last.size() - number.size(), '0')) + number;
 }
@@ -413,29 +405,16 @@ TetcastStatus guarded(TetcastContext *context, const char *path, const Pixels &p
   std::memcpy(&pixel_type, &desc.pixel_type, sizeof pixel_type);
   if (pixel_type < TETCAST_PIXEL_DEFAULT || pixel_type > TETCAST_PIXEL_DOUBLE)
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "unknown pixel type %d", pixel_type);
+  if (desc.channel_count < 0 || (desc.channels && publish && int(pixels.extras.size()) != desc.channel_count))
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
+                                 "image '%s': the frame lacks a channel that is to be written", path);
   if (desc.channels_only && pixels.extras.empty() && publish)
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
                                  "an image of a frame's channels only, but it has none");
   for (double value : desc.background)
     if (!(value >= 0 && value <= 1))
       return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "background component %g is outside [0, 1]", value);
-  try {
-    write_picture(context, path, pixels, desc, publish);
-    return TETCAST_OK;
-  } catch (const Failure &failure) {
-    return failure.status;
-  } catch (const std::bad_alloc &) {
-    return tetcast_context_error(context, TETCAST_ERROR_MEMORY, "cannot write image '%s': out of memory", path);
-  } catch (const std::system_error &error) {
-    const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
-    return tetcast_context_error(
-        context, TETCAST_ERROR_IO, "cannot write image '%s': %s%s", path, error.what(),
-        no_thread ? ": OpenImageIO needs a thread of its own for this format; .png and .jpg don't" : "");
-  } catch (const std::exception &error) {
-    return tetcast_context_error(context, TETCAST_ERROR_IO, "cannot write image '%s': %s", path, error.what());
-  } catch (...) {
-    return tetcast_context_error(context, TETCAST_ERROR_IO, "cannot write image '%s': unknown failure", path);
-  }
+  return tetcast::guard_writing(context, path, [&] { write_picture(context, path, pixels, desc, publish); });
 }
 
 } // namespace
@@ -444,6 +423,8 @@ TetcastImageDesc tetcast_image_desc_default(void) {
   TetcastImageDesc desc = {};
   desc.cookie = desc_cookie;
   desc.pixel_type = TETCAST_PIXEL_DEFAULT;
+  desc.channels = nullptr;
+  desc.channel_count = 0;
   for (double &value : desc.background)
     value = 1; // opaque white
   return desc;
@@ -459,7 +440,7 @@ TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, con
                          tetcast_frame_height(frame),
                          tetcast_frame_row_stride(frame),
                          tetcast_frame_type(frame) == TETCAST_TYPE_FLOAT64,
-                         extras_of(frame),
+                         extras_of(frame, desc),
                          desc && desc->channels_only};
   return guarded(context, path, pixels, desc, true);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What every function of the public boundary begins with. */
-#ifndef TC_BOUNDARY_H
-#define TC_BOUNDARY_H
+#ifndef TC_BASE_BOUNDARY_H
+#define TC_BASE_BOUNDARY_H
 
 #include <tetcast/tetcast.h>
 

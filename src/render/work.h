@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A picture that is being made: what its parts share. */
+#ifndef TC_RENDER_WORK_H
+#define TC_RENDER_WORK_H
+
+#include "render/render.h"
+
+/* What each worker has. */
+typedef struct TcWorking {
+  TcWorker worker;
+  double *sums;  /* [TC_TILE²][job.sums]: of the pixels under way */
+  double *cells; /* [TC_TILE²]: how many cells their rays cross; NULL: not counted */
+  double error;  /* the largest of the pixels' bounds so far */
+} TcWorking;
+
+typedef struct TcRender {
+  TcJob job, precise, count;
+  const TetcastScene *scene;
+  TetcastFrame *frame;
+  const TcIsaKernels *kernels;
+  TcScreen screen;
+  TcSurfaces surfaces;
+  TcLights lights;
+  TcSecond second;    /* of a transfer function of one dimension, for kernels that expect two */
+  TcWorking *workers; /* [threads] */
+  bool bounded;       /* a bound on the error is gathered as well */
+  bool counted;       /* the cells that rays cross are counted as well */
+  bool plain;         /* the sums are the frame's pixels as they are, and there are no channels */
+  int64_t tiles_x, tiles_y;
+} TcRender;
+
+/* What pixels are made from, but for their sums. */
+static inline TcGathered tc_render_gathered(const TcRender *render) {
+  const TcJob *job = &render->job;
+  TcGathered gathered = {
+      .bounded = render->bounded, .coefficients = job->coefficients, .exponent = job->shell->volume->exponent};
+  if (job->blend) {
+    gathered.colors = &render->scene->transfer->pieces;
+    gathered.value_exponent = job->values->exponent + (job->blend == TETCAST_BLEND_ADDITIVE ? gathered.exponent : 0);
+  }
+  return gathered;
+}
+
+/* The number made of the bits 0, 2, 4, … of i: the place along one axis of the i-th square of Morton's curve. */
+static inline int64_t tc_even_bits(int64_t i) {
+  int64_t result = 0;
+  for (int bit = 0; i >> 2 * bit; ++bit)
+    result |= (i >> 2 * bit & 1) << bit;
+  return result;
+}
+
+/* Chooses a grid of exactly `samples` points, as near to square as its divisors allow, and not higher than wide. */
+static inline void tc_sample_grid(int samples, int *x, int *y) {
+  *y = 1;
+  for (int i = 2; i * i <= samples; ++i) {
+    if (samples % i == 0)
+      *y = i;
+  }
+  *x = samples / *y;
+}
+
+/* Renders the frame by fewer rays than it has pixels (adaptive.c), once the workers are there. *rays is how many. */
+TetcastStatus tc_adaptive_run(TcRender *render, const TetcastRenderDesc *desc, int64_t *rays);
+
+#endif
