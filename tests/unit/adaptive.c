@@ -361,6 +361,42 @@ static void progress_goes_forward_and_stops(void **state) {
   world_end(&world);
 }
 
+/* Whichever allocation fails, that is said, and the next picture is whole. */
+static void memory_may_run_out(void **state) {
+  (void)state;
+  World world;
+  begin(&world, 0.5, TETCAST_TRAVERSAL_SHELL);
+  Fixture *fixture = &world.fixture;
+  assert_int_equal(tetcast_context_set_threads(fixture->context, 1), TETCAST_OK);
+  const TetcastCamera camera = camera_number(0);
+  const TetcastRenderDesc desc = adaptive_desc(0.05, 4, 4);
+  const Shot whole = shoot(&world, &camera, &desc, W, H);
+  TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
+  frame_desc.width = W;
+  frame_desc.height = H;
+  TetcastFrame *frame = NULL;
+  assert_int_equal(tetcast_frame_create(fixture->context, &frame_desc, &frame), TETCAST_OK);
+  int failed = 0;
+  for (long n = 1; n < 1000; ++n) {
+    const long before = fixture->live;
+    fixture->fail_at = fixture->allocations + n;
+    const TetcastStatus status = tetcast_scene_render(world.scene, &camera, &desc, frame, NULL);
+    const bool reached = fixture->allocations >= fixture->fail_at;
+    fixture->fail_at = 0;
+    if (!reached) {
+      assert_int_equal(status, TETCAST_OK);
+      break;
+    }
+    assert_true(status == TETCAST_ERROR_MEMORY && fixture->live <= before);
+    ++failed;
+  }
+  assert_true(failed > 8);
+  assert_memory_equal(whole.pixels, tetcast_frame_pixels(frame), sizeof(double) * 4 * W * H);
+  tetcast_frame_destroy(&frame);
+  free(whole.pixels);
+  world_end(&world);
+}
+
 static void refuse(World *world, const TetcastRenderDesc *desc, uint32_t channels, const char *text) {
   const TetcastCamera camera = camera_number(0);
   TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
@@ -413,6 +449,7 @@ int main(void) {
       cmocka_unit_test(pixels_that_are_cast_keep_the_tolerance),
       cmocka_unit_test(coefficients_and_floats_are_possible),
       cmocka_unit_test(progress_goes_forward_and_stops),
+      cmocka_unit_test(memory_may_run_out),
       cmocka_unit_test(what_cannot_be_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
