@@ -14,7 +14,7 @@ ${CC:-cc} -std=c17 -O2 -o "$work/surfaces" surfaces.c -lm
 "$tetcast" mesh "$work/trefoil.smesh" --max-volume 1.2e-3 --field gyroid:1.8 --single -o trefoil.vtu
 "$tetcast" mesh "$work/shell.smesh" --max-volume 1.3e-4 --field shell:6,4,1.4 --single -o shell.vtu
 if [ "${2:-}" = pictures ]; then
-  for name in hydrogen heat trefoil shell radiograph orbital gyroid mantle section projection; do
+  for name in hydrogen heat trefoil shell radiograph orbital gyroid mantle section projection cloud boundary; do
     "$tetcast" render --scene "$name.json" -o "$name.png"
   done
   "$tetcast" converge hydrogen.vtu --repeat 9 -o "$work/report"

@@ -1,40 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The public boundary: checks arguments, guards the host's floating-point environment, and hands what takes long to a
  * thread of the library's own (call.h); nothing else. What computes nothing, and calls nothing, needs no guard. */
-#include <tetcast/tetcast.h>
-
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
-#include "base/base.h"
-#include "base/call.h"
+#include "base/boundary.h"
 #include "mesh/cut.h"
 #include "mesh/mesh.h"
 #include "optics/transfer.h"
 #include "render/render.h"
-
-#define ARGUMENT(context, ...) tc_error(context, TETCAST_ERROR_ARGUMENT, __VA_ARGS__)
-
-/* The checks that every function which makes something begins with. */
-#define CHECK_OUT(context, out)                                                                                        \
-  do {                                                                                                                 \
-    if (!(out))                                                                                                        \
-      return ARGUMENT(context, "%s: no place for the result", __func__);                                               \
-    *(out) = NULL;                                                                                                     \
-  } while (0)
-#define CHECK_GIVEN(context, pointer)                                                                                  \
-  do {                                                                                                                 \
-    if (!(pointer))                                                                                                    \
-      return ARGUMENT(context, "%s: " #pointer " is NULL", __func__);                                                  \
-  } while (0)
-#define CHECK_DESC(context, desc)                                                                                      \
-  do {                                                                                                                 \
-    CHECK_GIVEN(context, desc);                                                                                        \
-    if ((desc)->cookie != TC_COOKIE) {                                                                                 \
-      return ARGUMENT(context, "%s: the description was not made with its ..._default() function", __func__);          \
-    }                                                                                                                  \
-  } while (0)
 
 /* ── version, status ── */
 
@@ -604,6 +579,29 @@ TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene,
   return tc_scene_set_transfer_function(scene, transfer_function);
 }
 
+TetcastStatus tetcast_scene_set_transfer_rows(TetcastScene *scene, const TetcastTransferRow *rows, int count,
+                                              const TetcastField *second) {
+  TC_ENTRY;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
+  TetcastContext *context = scene->context;
+  if (count < 1 || count > TETCAST_MAX_ROWS)
+    return ARGUMENT(context, "a transfer function of %d rows: must be from 1 to %d", count, TETCAST_MAX_ROWS);
+  CHECK_GIVEN(context, rows);
+  for (int i = 0; i < count; ++i) {
+    if (!rows[i].transfer_function)
+      return ARGUMENT(context, "row %d has no transfer function", i);
+    if (!isfinite(rows[i].at))
+      return ARGUMENT(context, "row %d is at %g, which is not finite", i, rows[i].at);
+    if (i > 0 && !(rows[i].at > rows[i - 1].at)) {
+      return ARGUMENT(context, "rows are not sorted: row %d at %g comes after %g", i, rows[i].at, rows[i - 1].at);
+    }
+  }
+  if (second && tetcast_field_association(second) != TETCAST_CELL)
+    return ARGUMENT(context, "the second quantity of a transfer function must be a field of cells");
+  return tc_scene_set_transfer_rows(scene, rows, count, second);
+}
+
 TetcastStatus tetcast_scene_set_blend(TetcastScene *scene, TetcastBlend blend) {
   TC_ENTRY;
   if (!scene)
@@ -731,7 +729,7 @@ TetcastStatus tetcast_scene_set_shading(TetcastScene *scene, const TetcastShadin
     desc = &defaults;
   TetcastContext *context = scene->context;
   CHECK_DESC(context, desc);
-  if ((unsigned)desc->shade > TETCAST_SHADE_SURFACES)
+  if ((unsigned)desc->shade > TETCAST_SHADE_ALL)
     return ARGUMENT(context, "unknown shading %d", (int)desc->shade);
   if ((unsigned)desc->normals > TETCAST_NORMALS_FLAT)
     return ARGUMENT(context, "unknown normals %d", (int)desc->normals);
@@ -741,6 +739,10 @@ TetcastStatus tetcast_scene_set_shading(TetcastScene *scene, const TetcastShadin
                     shares[1], shares[2]);
   if (!(desc->exponent >= 1 && desc->exponent <= 10000))
     return ARGUMENT(context, "shading: an exponent of %g, must be in [1, 10000]", desc->exponent);
+  if ((unsigned)desc->shadows > 1)
+    return ARGUMENT(context, "shading: shadows are %d, must be 0 or 1", desc->shadows);
+  if (desc->occlusion_rays < 0 || desc->occlusion_rays > 4096)
+    return ARGUMENT(context, "shading: %d directions of ambient light, must be in [0, 4096]", desc->occlusion_rays);
   if (desc->light_count < 0 || desc->light_count > TETCAST_MAX_LIGHTS)
     return ARGUMENT(context, "%d lights: at most %d are possible", desc->light_count, TETCAST_MAX_LIGHTS);
   if (desc->light_count > 0)
@@ -751,6 +753,7 @@ TetcastStatus tetcast_scene_set_shading(TetcastScene *scene, const TetcastShadin
       return status;
   }
   scene->lighting = tc_lighting_of(desc);
+  tc_scene_forget_open(scene);
   return TETCAST_OK;
 }
 
@@ -895,6 +898,28 @@ static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderD
       return ARGUMENT(context, "surfaces are seen by the exact integrator only");
     if (error)
       return ARGUMENT(context, "with surfaces there is no channel for the error");
+  }
+  if (scene->row_count > 0) {
+    if (scene->blend)
+      return ARGUMENT(context, "a transfer function of two dimensions is seen in the blend mode composite only");
+    if (!exact)
+      return ARGUMENT(context, "the exact integrator alone knows transfer functions of two dimensions");
+    if (error)
+      return ARGUMENT(context, "with a transfer function of two dimensions there is no channel for the error");
+    if (scene->values->association != TETCAST_POINT)
+      return ARGUMENT(context, "a transfer function of two dimensions needs a field of points");
+  }
+  if (tc_scene_is_lit(scene)) {
+    if (c)
+      return ARGUMENT(context, "with coefficients no light falls on the volume");
+    if (scene->blend)
+      return ARGUMENT(context, "light falls on the volume in the blend mode composite only");
+    if (!exact)
+      return ARGUMENT(context, "the exact integrator alone knows light in the volume");
+    if (error)
+      return ARGUMENT(context, "with light in the volume there is no channel for the error");
+    if (scene->values->association != TETCAST_POINT)
+      return ARGUMENT(context, "light in the volume needs a field of points, whose gradient is that of the vertices");
   }
   if (scene->isosurface_count > 0 && scene->values->association == TETCAST_CELL)
     return ARGUMENT(context, "isosurfaces need a field of points or corners, and this one is constant in each cell");

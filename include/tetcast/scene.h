@@ -57,6 +57,31 @@ TETCAST_API TetcastStatus tetcast_scene_create_preset(const TetcastScene *scene,
 TETCAST_API TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene,
                                                               const TetcastTransferFunction *transfer_function);
 
+/* A row of a transfer function of two dimensions. */
+typedef struct TetcastTransferRow {
+  /* Where the row is, in the second quantity's unit; finite. */
+  double at;
+  /* What the transfer function is there. */
+  const TetcastTransferFunction *transfer_function;
+} TetcastTransferRow;
+
+#define TETCAST_MAX_ROWS 64
+
+/* Sets a transfer function of two dimensions, in place of a former transfer function or coefficients: `count` rows,
+ * from 1 to TETCAST_MAX_ROWS, at ascending values of a second quantity that is constant in a cell. Between two rows,
+ * extinction and colour are linear in it; before the first row and beyond the last they are as there. So in each cell
+ * it is a transfer function of the scalar, linear between the knots of all rows, and pictures are as exact as with one.
+ * (Levoy's opacity, Display of surfaces from volume data, 1988, and boxes and triangles in the plane of value and
+ * gradient can be told so.)
+ *
+ * The second quantity is `second`, a field of cells, where NaN is transparent; if it is NULL, the magnitude of the
+ * scalar's gradient in the cell, in the scalar's unit per unit of length. The scene takes copies of the rows and of
+ * `second`. It needs a field of points, and is seen by the exact integrator in the blend mode composite, without a
+ * channel of error bounds: other things are TETCAST_ERROR_ARGUMENT when rendering. Must not run while this scene
+ * renders. On error the scene keeps what it had. */
+TETCAST_API TetcastStatus tetcast_scene_set_transfer_rows(TetcastScene *scene, const TetcastTransferRow *rows,
+                                                          int count, const TetcastField *second);
+
 /* Sets how the scalar's values along a ray become one pixel; a new scene has TETCAST_BLEND_COMPOSITE. With another
  * blend mode the scene needs a field and a transfer function, of which only the colours are used: nothing is hidden by
  * its extinction. A pixel's value is the mean over those of its samples that meet the volume; its alpha is the share of

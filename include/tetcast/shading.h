@@ -14,8 +14,10 @@ extern "C" {
 
 /* What light falls on. */
 typedef enum TetcastShade {
-  TETCAST_SHADE_NONE = 0, /* nothing: colours are as given */
-  TETCAST_SHADE_SURFACES  /* surfaces */
+  TETCAST_SHADE_NONE = 0,                                           /* nothing: colours are as given */
+  TETCAST_SHADE_SURFACES = 1,                                       /* surfaces */
+  TETCAST_SHADE_VOLUME = 2,                                         /* the volume */
+  TETCAST_SHADE_ALL = TETCAST_SHADE_SURFACES | TETCAST_SHADE_VOLUME /* both */
 } TetcastShade;
 
 /* What is perpendicular to an isosurface. */
@@ -39,7 +41,12 @@ typedef struct TetcastLight {
  *
  *     c (ambient + diffuse Σ L max(0, n·l)) + specular Σ L max(0, n·h)^exponent,   the latter where n·l > 0.
  *
- * Where there is no gradient, n·l counts as 1, without a specular part. */
+ * Where there is no gradient, n·l counts as 1, without a specular part.
+ *
+ * On surfaces this is computed at each point that is seen. In the volume it is computed at the vertices, with n the
+ * gradient there, turned to the eye: what c is multiplied by and what is added to the product are then linear in each
+ * cell, and of that the integral is exact. The light between vertices is thereby off by an error of second order in the
+ * size of cells; the larger the exponent, the finer the cells that highlights need. */
 typedef struct TetcastShadingDesc {
   /* Set by tetcast_shading_desc_default(). */
   uint32_t cookie;
@@ -60,6 +67,15 @@ typedef struct TetcastShadingDesc {
   const TetcastLight *lights;
   /* From 0 to TETCAST_MAX_LIGHTS; default 0: a white light at the eye. */
   int light_count;
+  /* 1: the volume, not the surfaces in it, casts shadows: of each light a vertex gets the share that the transfer
+   * function lets through on the way there, through all of what clips leave of the mesh, and between vertices it is
+   * linear in each cell. This holds for lights from a direction; one at the eye casts no shadow that it sees. The
+   * shares are computed by the first frame that needs them and kept until the field, the transfer function, the clip
+   * or the shading changes. Default 0. */
+  int shadows;
+  /* The ambient light comes from so many directions, spread evenly over the sphere, and a vertex gets the mean of what
+   * arrives from them, found like shadows; from 0, the default: all of it arrives everywhere, to 4096. */
+  int occlusion_rays;
 } TetcastShadingDesc;
 
 TETCAST_API TetcastShadingDesc tetcast_shading_desc_default(void);

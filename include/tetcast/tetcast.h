@@ -17,6 +17,7 @@
 #include <tetcast/scene.h>
 #include <tetcast/shading.h>
 #include <tetcast/slice.h>
+#include <tetcast/statistics.h>
 #include <tetcast/status.h>
 #include <tetcast/transfer_function.h>
 #include <tetcast/version.h>

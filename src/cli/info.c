@@ -22,6 +22,7 @@ static const char help_text[] =
     "and infinite values, bounds, and the health of the tetrahedra that the cells are cut into.\n"
     "\n"
     "      --json               as JSON, for scripts\n"
+    "      --statistics         also the values below which shares of the volume lie, exactly\n"
     "      --block NAME         only this block, or group of blocks\n"
     "      --time STEP          of a series this step, from 0, the default; -1 is the last; or t=TIME\n"
     "      --merge-tolerance D  points no further apart become one; default: only those of different pieces, if they\n"
@@ -40,14 +41,19 @@ static const char help_text[] =
     "Example:\n"
     "  tetcast info flow.vtu\n";
 
+const double info_shares[INFO_QUANTILES] = {0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99};
+
 static TetcastStatus get_range(const Info *info, const char *selector, InfoRange *range) {
   TetcastField *field = NULL;
-  const TetcastStatus status = info->vtk->dataset_field(info->dataset, selector, &field, NULL);
+  TetcastStatus status = info->vtk->dataset_field(info->dataset, selector, &field, NULL);
   if (status == TETCAST_OK) {
     double bounds[2];
     tetcast_field_range(field, bounds, &range->nonfinite);
     range->low = bounds[0];
     range->high = bounds[1];
+    if (info->statistics)
+      status =
+          tetcast_statistics_quantiles(info->context, info->mesh, field, info_shares, INFO_QUANTILES, range->quantiles);
   }
   tetcast_field_destroy(&field);
   return status;
@@ -86,21 +92,28 @@ static TetcastStatus get_arrays(Info *info) {
   return TETCAST_OK;
 }
 
-static TetcastStatus get_info(Info *info, TetcastContext *context) {
-  TetcastStatus status = info->vtk->dataset_read(context, info->path, &info->desc, &info->dataset);
+static TetcastStatus get_info(Info *info) {
+  TetcastStatus status = info->vtk->dataset_read(info->context, info->path, &info->desc, &info->dataset);
+  if (status == TETCAST_OK)
+    status = info->vtk->dataset_mesh(info->dataset, &info->mesh);
   if (status == TETCAST_OK)
     status = get_arrays(info);
-  TetcastMesh *mesh = NULL;
-  if (status == TETCAST_OK)
-    status = info->vtk->dataset_mesh(info->dataset, &mesh);
   if (status == TETCAST_OK) {
-    info->tetrahedra = tetcast_mesh_tetrahedron_count(mesh);
-    info->vertices = tetcast_mesh_vertex_count(mesh);
-    tetcast_mesh_bounds(mesh, info->bounds);
-    status = tetcast_mesh_health(context, mesh, &info->health);
+    info->tetrahedra = tetcast_mesh_tetrahedron_count(info->mesh);
+    info->vertices = tetcast_mesh_vertex_count(info->mesh);
+    tetcast_mesh_bounds(info->mesh, info->bounds);
+    status = tetcast_mesh_health(info->context, info->mesh, &info->health);
   }
-  tetcast_mesh_destroy(&mesh);
+  tetcast_mesh_destroy(&info->mesh);
   return status;
+}
+
+/* The values below which shares of the volume lie, in a line of their own. */
+static void print_quantiles(const InfoRange *range, int indent) {
+  printf("%*sof the volume", indent + 4, "");
+  for (int i = 0; i < INFO_QUANTILES; i++)
+    printf("  %g %%: %.4g", 100 * info_shares[i], range->quantiles[i]);
+  putchar('\n');
 }
 
 static void print_range(const InfoRange *range, const char *label) {
@@ -121,17 +134,18 @@ static void print_arrays(const Info *info) {
     const InfoArray *array = &info->arrays[i];
     const int indent = printf("  %-5s  %-*s  %-7s  ", array->about.association == TETCAST_CELL ? "cell" : "point",
                               width, array->about.selector, array->about.type);
-    if (array->about.components == 1) {
-      print_range(&array->component[0], "");
-    } else {
-      for (int c = 0; c < array->components; c++) {
-        char label[16];
-        snprintf(label, sizeof label, ":%d", c);
-        print_range(&array->component[c], label);
-        printf("%*s", indent, "");
-      }
-      print_range(&array->magnitude, "mag");
+    const InfoRange *last = array->about.components == 1 ? &array->component[0] : &array->magnitude;
+    for (int c = 0; array->about.components > 1 && c < array->components; c++) {
+      char label[16];
+      snprintf(label, sizeof label, ":%d", c);
+      print_range(&array->component[c], label);
+      if (info->statistics)
+        print_quantiles(&array->component[c], indent);
+      printf("%*s", indent, "");
     }
+    print_range(last, array->about.components == 1 ? "" : "mag");
+    if (info->statistics)
+      print_quantiles(last, indent);
   }
 }
 
@@ -276,12 +290,13 @@ static int print_formats(void) {
 typedef struct Request {
   const char *path, *block, *time;
   double merge_tolerance;
-  bool json, formats, strict, cell_to_point, no_displacement;
+  bool json, formats, strict, cell_to_point, no_displacement, statistics;
   int subdivide;
 } Request;
 
 static const struct option words[] = {{"json", no_argument, NULL, 'j'},
                                       {"formats", no_argument, NULL, 'f'},
+                                      {"statistics", no_argument, NULL, 'q'},
                                       {"block", required_argument, NULL, 'b'},
                                       {"time", required_argument, NULL, 't'},
                                       {"merge-tolerance", required_argument, NULL, 'm'},
@@ -319,6 +334,9 @@ static int parse(int argc, char **argv, Request *request) {
       break;
     case 'f':
       request->formats = true;
+      break;
+    case 'q':
+      request->statistics = true;
       break;
     case 'S':
       request->strict = true;
@@ -369,8 +387,9 @@ int tetcast_cli_info(int argc, char **argv) {
   if (request.formats)
     return print_formats();
   Info info = {.path = request.path};
-  TetcastContext *context = cli_context_create(0);
-  info.vtk = context ? cli_vtk() : NULL;
+  info.context = cli_context_create(0);
+  info.statistics = request.statistics;
+  info.vtk = info.context ? cli_vtk() : NULL;
   code = CLI_FAILED;
   cli_set_strict(request.strict);
   if (info.vtk) {
@@ -379,7 +398,7 @@ int tetcast_cli_info(int argc, char **argv) {
     info.desc.cell_to_point = request.cell_to_point;
     info.desc.no_displacement = request.no_displacement;
     info.desc.subdivision = request.subdivide;
-    const TetcastStatus status = get_info(&info, context);
+    const TetcastStatus status = get_info(&info);
     if (status == TETCAST_OK && request.strict)
       report_defects(&info);
     if (cli_verdict(CLI_DONE) != CLI_DONE) {
@@ -393,6 +412,6 @@ int tetcast_cli_info(int argc, char **argv) {
     info.vtk->dataset_destroy(&info.dataset);
   }
   free(info.arrays);
-  tetcast_context_destroy(&context);
+  tetcast_context_destroy(&info.context);
   return code;
 }

@@ -11,9 +11,13 @@
 
 enum { INFO_COMPONENTS = 9 }; /* arrays of more are shown by magnitude alone */
 
+enum { INFO_QUANTILES = 7 };
+extern const double info_shares[INFO_QUANTILES];
+
 typedef struct InfoRange {
   double low, high;
   int64_t nonfinite;
+  double quantiles[INFO_QUANTILES]; /* below which info_shares of the volume lie; with --statistics */
 } InfoRange;
 
 typedef struct InfoArray {
@@ -28,7 +32,10 @@ typedef struct Info {
   const char *path;
   const CliVtk *vtk;
   TetcastDatasetDesc desc;
+  bool statistics; /* whether quantiles are wanted */
+  TetcastContext *context;
   TetcastDataset *dataset;
+  TetcastMesh *mesh;
   int64_t tetrahedra, vertices;
   double bounds[6];
   TetcastMeshHealth health;

@@ -6,15 +6,24 @@
 #include "info.h"
 #include "json.h"
 
-static json_t *range_object(const InfoRange *range) {
+static json_t *range_object(const Info *info, const InfoRange *range) {
   const double ends[2] = {range->low, range->high};
   json_t *object = json_object();
   json_object_set_new(object, "range", cli_json_array(ends, 2));
   json_object_set_new(object, "nonfinite", json_integer(range->nonfinite));
+  json_t *quantiles = info->statistics ? json_array() : NULL;
+  for (int i = 0; quantiles && i < INFO_QUANTILES; i++) { /* NaN, where no value is finite, is null */
+    json_t *pair = json_array(), *value = json_real(range->quantiles[i]);
+    json_array_append_new(pair, json_real(info_shares[i]));
+    json_array_append_new(pair, value ? value : json_null());
+    json_array_append_new(quantiles, pair);
+  }
+  if (quantiles)
+    json_object_set_new(object, "quantiles", quantiles);
   return object;
 }
 
-static json_t *array_object(const InfoArray *array) {
+static json_t *array_object(const Info *info, const InfoArray *array) {
   json_t *object = json_object();
   json_object_set_new(object, "name", cli_json_text(array->about.name));
   json_object_set_new(object, "selector", cli_json_text(array->about.selector));
@@ -23,11 +32,11 @@ static json_t *array_object(const InfoArray *array) {
   json_object_set_new(object, "components", json_integer(array->about.components));
   json_object_set_new(object, "active", json_boolean(array->about.active));
   const InfoRange *range = array->about.components == 1 ? &array->component[0] : &array->magnitude;
-  json_object_update_new(object, range_object(range));
+  json_object_update_new(object, range_object(info, range));
   if (array->about.components > 1 && array->components > 0) {
     json_t *list = json_array();
     for (int i = 0; i < array->components; i++)
-      json_array_append_new(list, range_object(&array->component[i]));
+      json_array_append_new(list, range_object(info, &array->component[i]));
     json_object_set_new(object, "component_ranges", list);
   }
   return object;
@@ -110,7 +119,7 @@ void info_print_json(const Info *info) {
   json_object_set_new(root, "bounds", cli_json_array(info->bounds, 6));
   json_t *arrays = json_array();
   for (int i = 0; i < info->array_count; i++)
-    json_array_append_new(arrays, array_object(&info->arrays[i]));
+    json_array_append_new(arrays, array_object(info, &info->arrays[i]));
   json_object_set_new(root, "arrays", arrays);
   json_object_set_new(root, "health", health_object(&info->health));
   if (json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0)

@@ -139,8 +139,8 @@ static int write_files(Run *run) {
   const int code = picture_write(run, options->output);
   if (code != CLI_DONE)
     return code;
-  if (options->save_scene &&
-      !scene_file_write(options, stage->array, &stage->camera, stage->transfer_function, stage->shown))
+  if (options->save_scene && !scene_file_write(options, stage->array, &stage->camera, stage->transfer_function,
+                                               stage->rows.source, stage->shown))
     return CLI_FAILED;
   return !options->stats || cli_json_write(options->stats, stats_object(&run->stats)) ? CLI_DONE : CLI_FAILED;
 }

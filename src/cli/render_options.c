@@ -26,7 +26,7 @@
 /* Order of the library's enumerations. */
 static const char *const opacity_models[] = {"unit-distance", "vtk-unstructured", "ospray", NULL};
 static const char *const blends[] = {"composite", "maximum", "minimum", "average", "additive", NULL};
-static const char *const shades[] = {"none", "surfaces", NULL};
+static const char *const shades[] = {"none", "surfaces", "volume", "all", NULL};
 static const char *const normals[] = {"smooth", "flat", NULL};
 static const char *const isas[] = {"auto", "scalar", "avx2", "avx512", NULL};
 static const char *const traversals[] = {"shell", "faces", NULL};
@@ -51,9 +51,9 @@ const RenderRow render_table[OPTION_COUNT] = {
                          .form = "expected a transfer function or the path of one"},
     [OPTION_PRESET] = {"preset", KIND_TEXT, AT(preset), .excludes = BIT(OPTION_TRANSFER) | DIRECT,
                        .form = "expected a name"},
-    [OPTION_RANGE] = {"range", KIND_NUMBERS, AT(range), 2, 2, -DBL_MAX, DBL_MAX,
-                      .excludes = BIT(OPTION_TRANSFER) | DIRECT,
-                      .form = "expected two numbers, LO not above HI, or step, or series"},
+    [OPTION_RANGE] =
+        {"range", KIND_NUMBERS, AT(range), 2, 2, -DBL_MAX, DBL_MAX, .excludes = BIT(OPTION_TRANSFER) | DIRECT,
+         .form = "expected two numbers, LO not above HI, or shares of the volume as 1%,99%, or step, or series"},
     [OPTION_OPACITY_MODEL] = {"opacity-model", KIND_CHOICE, AT(opacity_model), .names = opacity_models,
                               .excludes = DIRECT, .form = "expected unit-distance, vtk-unstructured or ospray"},
     [OPTION_EXTINCTION] = {"extinction", KIND_TEXT, AT(extinction), .excludes = TRANSFER, .only = COMMAND_RENDER,
@@ -75,13 +75,17 @@ const RenderRow render_table[OPTION_COUNT] = {
                       .form = "expected nothing, or a colour: a name, #rrggbb or r,g,b"},
     [OPTION_OUTLINE] = {"outline", KIND_OPTIONAL, AT(outline), .only = COMMAND_RENDER,
                         .form = "expected nothing, or a colour: a name, #rrggbb or r,g,b"},
-    [OPTION_SHADE] = {"shade", KIND_CHOICE, AT(shade), .names = shades, .form = "expected none or surfaces"},
+    [OPTION_SHADE] = {"shade", KIND_CHOICE, AT(shade), .names = shades,
+                      .form = "expected none, surfaces, volume or all"},
     [OPTION_NORMALS] = {"normals", KIND_CHOICE, AT(normals), .names = normals, .form = "expected smooth or flat"},
     [OPTION_MATERIAL] = {"material", KIND_NUMBERS, AT(material), 4, 4, 0, 10000,
                          .form = "expected ambient,diffuse,specular,exponent: four numbers from 0, the last from 1 to "
                                  "10000"},
     [OPTION_LIGHT] = {"light", KIND_LIST, AT(lights), .most = TETCAST_MAX_LIGHTS,
                       .form = "expected x,y,z[:COLOUR]: where it comes from, not 0,0,0, and a name, #rrggbb or r,g,b"},
+    [OPTION_SHADOWS] = {"shadows", KIND_FLAG, AT(shadows), .form = "expected true or false"},
+    [OPTION_AMBIENT_OCCLUSION] = {"ambient-occlusion", KIND_INTEGERS, AT(ambient_occlusion), 1, 1, 0, 4096,
+                                  .form = "expected a whole number of directions from 1 to 4096, or 0: without"},
     [OPTION_CLIP] = {"clip", KIND_NUMBERS, AT(clip), 4, 4, -DBL_MAX, DBL_MAX,
                      .form = "expected four numbers nx,ny,nz,d, of which nx,ny,nz are not all zero"},
     [OPTION_CLIP_BOX] = {"clip-box", KIND_NUMBERS, AT(clip_box), 6, 6, -DBL_MAX, DBL_MAX,
@@ -428,7 +432,32 @@ static const char *add_to_list(OptionId id, TextList *list, const OptionValue *v
   return NULL;
 }
 
+/* "1%,99%" as shares. */
+static bool parse_shares(const char *text, double shares[2]) {
+  char *numbers = cli_duplicate(text);
+  int signs = 0, kept = 0;
+  for (int i = 0; text[i]; i++) {
+    const bool sign = text[i] == '%' && (text[i + 1] == ',' || !text[i + 1]);
+    signs += sign;
+    if (!sign)
+      numbers[kept++] = text[i];
+  }
+  numbers[kept] = 0;
+  const bool fine = signs == 2 && cli_parse_numbers(numbers, ',', 2, shares) == 2 && shares[0] >= 0 &&
+                    shares[0] < shares[1] && shares[1] <= 100;
+  free(numbers);
+  shares[0] /= 100;
+  shares[1] /= 100;
+  return fine;
+}
+
 static const char *set_range(RenderOptions *options, const OptionValue *value) {
+  double shares[2];
+  if (value->text && parse_shares(value->text, shares)) {
+    memcpy(options->range, shares, sizeof shares);
+    options->range_kind = RANGE_QUANTILES;
+    return NULL;
+  }
   const bool step = value->text && !strcmp(value->text, "step"), series = value->text && !strcmp(value->text, "series");
   const char *reason = step || series ? NULL : set_numbers(OPTION_RANGE, options->range, value);
   if (!reason)

@@ -40,6 +40,8 @@ typedef enum OptionId {
   OPTION_NORMALS,
   OPTION_MATERIAL,
   OPTION_LIGHT,
+  OPTION_SHADOWS,
+  OPTION_AMBIENT_OCCLUSION,
   OPTION_CLIP,
   OPTION_CLIP_BOX,
   OPTION_STOP_DEPTH,
@@ -75,7 +77,7 @@ typedef enum OptionId {
 typedef enum RenderCommand { COMMAND_RENDER = 1, COMMAND_CONVERGE = 2 } RenderCommand;
 
 /* The kinds of range that --range can name. */
-typedef enum RangeKind { RANGE_DEFAULT, RANGE_FIXED, RANGE_STEP, RANGE_SERIES } RangeKind;
+typedef enum RangeKind { RANGE_DEFAULT, RANGE_FIXED, RANGE_QUANTILES, RANGE_STEP, RANGE_SERIES } RangeKind;
 
 /* What an option has that may be given several times. */
 typedef struct TextList {
@@ -98,10 +100,10 @@ typedef struct RenderOptions {
   double material[4], adaptive[3]; /* epsilon, coarse, fine */
   TextList isosurfaces, slices, lights;
   double merge_tolerance; /* negative unless given */
-  RangeKind range_kind;   /* RANGE_FIXED: options->range */
-  double subdivide;
+  RangeKind range_kind;   /* RANGE_FIXED: options->range; RANGE_QUANTILES: these shares of the volume */
+  double subdivide, ambient_occlusion;
   int opacity_model, blend, shade, normals, traversal, isa, pixel_type; /* values of the library's enumerations */
-  int cell_to_point, no_displacement, quiet, strict, resume, refine, no_plots, groups;
+  int cell_to_point, no_displacement, quiet, strict, resume, refine, no_plots, groups, shadows;
   uint64_t given;  /* bit 1 << OptionId: has a value from command line or scene file */
   uint64_t source; /* the same for the source being read alone */
 } RenderOptions;
@@ -165,6 +167,11 @@ static inline TetcastBlend render_options_blend(const RenderOptions *options) {
 static inline bool render_options_surfaces(const RenderOptions *options) {
   return render_options_given(options, OPTION_ISOSURFACE) || render_options_given(options, OPTION_SLICE) ||
          render_options_given(options, OPTION_SURFACE);
+}
+
+/* Whether light falls on the volume. */
+static inline bool render_options_lit(const RenderOptions *options) {
+  return render_options_given(options, OPTION_SHADE) && options->shade & TETCAST_SHADE_VOLUME;
 }
 
 /* Whether surfaces are all there is to see: no transfer function was given beside them. */

@@ -21,6 +21,37 @@ static const char *command_name(const RenderOptions *options) {
   return options->command == COMMAND_RENDER ? "render" : "converge";
 }
 
+/* What of the light has nothing to fall on, or doesn't go with the rest. NULL: nothing. */
+static const char *find_darkness(const RenderOptions *options) {
+  static const uint64_t light = BIT(OPTION_SHADE) | BIT(OPTION_NORMALS) | BIT(OPTION_MATERIAL) | BIT(OPTION_LIGHT);
+  if (!render_options_surfaces(options) && !render_options_lit(options)) {
+    if (options->given & light)
+      return "--shade, --normals, --material, --light: need --isosurface or --surface, on which the light falls, or "
+             "--shade volume";
+    if (options->shadows || options->ambient_occlusion > 0)
+      return "--shadows, --ambient-occlusion: need --shade volume, or a --transfer and --isosurface or --surface";
+    return NULL;
+  }
+  if (options->shadows && options->lights.count == 0)
+    return "--shadows: need a --light, as the one at the eye casts no shadow that it sees";
+  if ((options->shadows || options->ambient_occlusion > 0 || render_options_lit(options)) &&
+      render_options_surfaces_alone(options))
+    return "--shade volume, --shadows, --ambient-occlusion: need a volume: a --transfer beside the surfaces";
+  if (!render_options_lit(options))
+    return NULL;
+  if (options->command == COMMAND_CONVERGE)
+    return "--shade volume: render only, as the integrators that are compared know no light";
+  if (render_options_direct(options))
+    return "--shade volume: not possible with --extinction or --emission, which are all the light there is";
+  if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
+    return "--shade volume: needs --blend composite";
+  if (options->integrator && strcmp(options->integrator, "exact"))
+    return "--integrator: with --shade volume there is only exact";
+  if (render_options_channels(options) & TETCAST_CHANNEL_ERROR)
+    return "--channels error: not possible with --shade volume, as light is known at the vertices only";
+  return NULL;
+}
+
 /* What of coefficients and what of a transfer function doesn't go together. NULL: nothing. */
 static const char *find_mixture(const RenderOptions *options) {
   const uint32_t channels = render_options_channels(options);
@@ -47,12 +78,13 @@ static const char *find_mixture(const RenderOptions *options) {
       return "--integrator: with --isosurface, --slice or --surface there is only exact";
     if (channels & TETCAST_CHANNEL_ERROR)
       return "--channels error: not possible with --isosurface, --slice or --surface; where a surface is seen edge-on, "
-             "rounding decides "
-             "whether "
-             "a ray meets it";
-  } else if (options->given & (BIT(OPTION_SHADE) | BIT(OPTION_NORMALS) | BIT(OPTION_MATERIAL) | BIT(OPTION_LIGHT))) {
-    return "--shade, --normals, --material, --light: need --isosurface or --surface, on which the light falls";
+             "rounding decides whether a ray meets it";
   }
+  const char *light = find_darkness(options);
+  if (light)
+    return light;
+  if (render_options_range(options) == RANGE_QUANTILES && render_options_blend(options) == TETCAST_BLEND_ADDITIVE)
+    return "--range of shares: --blend additive has integrals along rays, which are in no range of values";
   if (!render_options_direct(options)) {
     if (render_options_groups(options))
       return "--groups: needs --extinction or --emission";

@@ -146,7 +146,7 @@ static bool begins_as_object(const char *path) {
 char *scene_file_mistaken(const char *path) {
   json_t *root = begins_as_object(path) ? json_load_file(path, 0, NULL) : NULL;
   char *result = NULL;
-  if (json_object_get(root, "color"))
+  if (json_object_get(root, "color") || json_object_get(root, "rows"))
     result = cli_print("'%s' is a transfer function, not a mesh: render takes it by --transfer %s", path, path);
   else if (json_object_get(root, "input") || json_object_get(root, "camera") || json_object_get(root, "transfer"))
     result = cli_print("'%s' is a scene, not a mesh: render takes it by --scene %s", path, path);
@@ -229,8 +229,6 @@ static json_t *text_array(const TextList *list) {
 static void write_surfaces(json_t *scene, const RenderOptions *options) {
   if (render_options_given(options, OPTION_OUTLINE))
     json_object_set_new(scene, "outline", json_string(options->outline));
-  if (!render_options_surfaces(options))
-    return;
   if (options->isosurfaces.count > 0)
     json_object_set_new(scene, "isosurface", text_array(&options->isosurfaces));
   if (options->slices.count > 0)
@@ -247,10 +245,14 @@ static void write_surfaces(json_t *scene, const RenderOptions *options) {
     json_object_set_new(scene, "material", cli_json_array(options->material, 4));
   if (options->lights.count > 0)
     json_object_set_new(scene, "light", text_array(&options->lights));
+  if (options->shadows)
+    json_object_set_new(scene, "shadows", json_true());
+  if (options->ambient_occlusion > 0)
+    json_object_set_new(scene, "ambient_occlusion", json_integer((json_int_t)options->ambient_occlusion));
 }
 
 bool scene_file_write(const RenderOptions *options, const char *array, const TetcastCamera *camera,
-                      const TetcastTransferFunction *transfer_function, const double range[2]) {
+                      const TetcastTransferFunction *transfer_function, const json_t *rows, const double range[2]) {
   json_t *scene = json_object();
   /* Names come from the file system and the data, and JSON takes UTF-8 only. */
   int failed = json_object_set_new(scene, "input", input_value(options));
@@ -284,6 +286,8 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
   if (render_options_surfaces_alone(options)) {
     json_object_set_new(scene, "preset", json_string(render_options_preset(options)));
     json_object_set_new(scene, "range", range ? cli_json_array(range, 2) : json_string("step"));
+  } else if (rows) {
+    json_object_set_new(scene, "transfer", json_deep_copy(rows));
   } else if (transfer_function) {
     json_object_set_new(scene, "transfer", transfer_object(transfer_function));
   } else if (!render_options_direct(options)) {

@@ -17,9 +17,9 @@ bool scene_file_read(RenderOptions *options);
 char *scene_file_mistaken(const char *path);
 
 /* Writes options->save_scene: everything that makes the picture again, bit for bit. transfer_function NULL: each step
- * of a series has one of its own, by the preset. `range`: that of the preset where isosurfaces alone are seen; NULL:
- * each step's own. False after a message. */
+ * of a series has one of its own, by the preset. `rows`: the file of one with rows, else NULL. `range`: that of the
+ * preset where isosurfaces alone are seen; NULL: each step's own. False after a message. */
 bool scene_file_write(const RenderOptions *options, const char *array, const TetcastCamera *camera,
-                      const TetcastTransferFunction *transfer_function, const double range[2]);
+                      const TetcastTransferFunction *transfer_function, const json_t *rows, const double range[2]);
 
 #endif

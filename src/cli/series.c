@@ -342,8 +342,9 @@ static int write_files(const Series *series) {
   const RenderOptions *options = &series->run->options;
   const Stage *stage = &series->run->stage;
   const bool own = render_options_range(options) == RANGE_STEP;
-  if (options->save_scene && !scene_file_write(options, stage->array, &series->camera,
-                                               own ? NULL : stage->transfer_function, own ? NULL : stage->shown))
+  if (options->save_scene &&
+      !scene_file_write(options, stage->array, &series->camera, own ? NULL : stage->transfer_function,
+                        stage->rows.source, own ? NULL : stage->shown))
     return CLI_FAILED;
   if (!options->stats)
     return CLI_DONE;

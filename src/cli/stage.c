@@ -9,7 +9,6 @@
 #include "clip.h"
 #include "progress.h"
 #include "surfaces.h"
-#include "transfer_file.h"
 #include "view.h"
 
 int stage_begin(Stage *stage, const RenderOptions *options) {
@@ -17,9 +16,13 @@ int stage_begin(Stage *stage, const RenderOptions *options) {
   if (!stage->context)
     return CLI_FAILED;
   if (render_options_given(options, OPTION_TRANSFER)) {
-    stage->transfer_function = transfer_file_load(stage->context, options);
+    stage->transfer_function = transfer_file_load(stage->context, options, &stage->rows);
     if (!stage->transfer_function)
       return CLI_FAILED;
+    if (stage->rows.count > 0 && options->command == COMMAND_CONVERGE) {
+      cli_error("--transfer: one with rows is for render only, as the integrators that are compared know none");
+      return CLI_FAILED;
+    }
   } else if (render_options_given(options, OPTION_OPACITY_MODEL)) {
     cli_warning("a preset states extinction: --opacity-model has no effect");
   }
@@ -103,7 +106,7 @@ static int read_field(Stage *stage, const RenderOptions *options, const int64_t 
   desc.subdivision = (int)options->subdivide;
   desc.cell_to_point = options->cell_to_point;
   desc.no_displacement = options->no_displacement;
-  desc.only = only_array(stage, options);
+  desc.only = stage->rows.second ? NULL : only_array(stage, options);
   const char *path = options->input;
   int64_t file = 0;
   if (options->inputs) {
@@ -139,6 +142,14 @@ static int read_field(Stage *stage, const RenderOptions *options, const int64_t 
       stage->array = cli_duplicate(array);
       if (!options->array)
         tell_choice(stage);
+    }
+  }
+  if (status == TETCAST_OK && stage->rows.second) {
+    status = vtk->dataset_field(stage->dataset, stage->rows.second, &stage->second, &array);
+    if (status == TETCAST_OK && tetcast_field_association(stage->second) != TETCAST_CELL) {
+      cli_error("%s: second: '%s' is an array of points; expected one of cells, or \"gradient\"",
+                options->transfer ? options->transfer : options->scene, stage->rows.second);
+      return CLI_FAILED;
     }
   }
   stage->read_seconds = cli_seconds() - start;
@@ -239,6 +250,8 @@ static TetcastStatus set_transfer_function(Stage *stage, const RenderOptions *op
   if (!stage->transfer_function) {
     if (render_options_range(options) == RANGE_FIXED)
       range = options->range;
+    else if (render_options_range(options) == RANGE_QUANTILES)
+      range = stage->quantiles;
     memcpy(stage->shown, range, sizeof stage->shown);
     const bool labelled = stage->uniform && stage->array;
     status = labelled ? matter_shade(stage->context, stage->scene, &stage->matter, options->preset, range,
@@ -246,7 +259,7 @@ static TetcastStatus set_transfer_function(Stage *stage, const RenderOptions *op
                       : tetcast_scene_create_preset(stage->scene, render_options_preset(options), range[0], range[1],
                                                     &stage->transfer_function);
   }
-  if (status == TETCAST_OK)
+  if (status == TETCAST_OK && stage->rows.count == 0) /* rows the scene has by now */
     status = render_options_surfaces_alone(options)
                  ? surfaces_set_colors(stage->context, stage->scene, stage->transfer_function)
                  : tetcast_scene_set_transfer_function(stage->scene, stage->transfer_function);
@@ -262,6 +275,19 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
               stage->array ? stage->array : "of the mesh");
     return CLI_FAILED;
   }
+  if (stage->rows.count > 0 && tetcast_field_association(stage->field) == TETCAST_CELL) {
+    cli_error(
+        "--transfer: one with rows needs an array of points, and %s has a value for each cell; --cell-to-point makes "
+        "one for points of it",
+        stage->array ? stage->array : "the mesh's");
+    return CLI_FAILED;
+  }
+  if (render_options_lit(options) && tetcast_field_association(stage->field) == TETCAST_CELL) {
+    cli_error("--shade volume: the array %s has a value for each cell, so no gradient; --cell-to-point makes one for "
+              "points of it",
+              stage->array ? stage->array : "of the mesh");
+    return CLI_FAILED;
+  }
   cli_interrupt_hold(true);
   TetcastStatus status = create_volume(stage, options);
   if (status == TETCAST_OK && !stage->scene)
@@ -271,10 +297,15 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
   if (status == TETCAST_OK)
     status = stage->field ? tetcast_scene_set_field(stage->scene, stage->field)
                           : coefficients_set(stage->scene, options, &stage->coefficients);
+  if (status == TETCAST_OK && stage->rows.count > 0)
+    status = tetcast_scene_set_transfer_rows(stage->scene, stage->rows.row, stage->rows.count, stage->second);
   if (status == TETCAST_OK)
     status = tetcast_scene_set_blend(stage->scene, render_options_blend(options));
   if (status == TETCAST_OK)
     status = clip_scene(stage->scene, options);
+  if (status == TETCAST_OK && stage->field && render_options_range(options) == RANGE_QUANTILES)
+    status =
+        tetcast_statistics_quantiles(stage->context, stage->mesh, stage->field, options->range, 2, stage->quantiles);
   if (status == TETCAST_OK)
     status = surfaces_outline(stage->scene, options);
   if (status != TETCAST_OK)
@@ -302,6 +333,7 @@ int stage_shade(Stage *stage, const RenderOptions *options, const double range[2
 
 void stage_drop_dataset(Stage *stage) {
   tetcast_field_destroy(&stage->field);
+  tetcast_field_destroy(&stage->second);
   coefficients_release(&stage->coefficients);
   tetcast_mesh_destroy(&stage->mesh);
   if (stage->dataset)
@@ -310,6 +342,7 @@ void stage_drop_dataset(Stage *stage) {
 
 void stage_release(Stage *stage) {
   tetcast_scene_destroy(&stage->scene);
+  transfer_file_release(&stage->rows);
   tetcast_transfer_function_destroy(&stage->transfer_function);
   tetcast_volume_destroy(&stage->volume);
   stage_drop_dataset(stage);

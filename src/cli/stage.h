@@ -9,6 +9,7 @@
 #include "coefficients.h"
 #include "matter.h"
 #include "render_options.h"
+#include "transfer_file.h"
 
 typedef struct Stage {
   TetcastContext *context;
@@ -19,12 +20,15 @@ typedef struct Stage {
   TetcastVolume *volume;
   TetcastVolumeInfo info;
   TetcastTransferFunction *transfer_function;
+  TransferRows rows;    /* of a transfer function of two dimensions */
+  TetcastField *second; /* its second quantity, until stage_drop_dataset(); NULL: it needs none */
   TetcastScene *scene;
   TetcastCamera camera;
-  double shown[2];   /* the range of the colour map, where that was made for one */
-  double range[2];   /* of the field's finite values */
-  int64_t nonfinite; /* how many of its values are not finite */
-  char *array;       /* what was read, as --array would name it; NULL: coefficients, or uniform matter without labels */
+  double shown[2];     /* the range of the colour map, where that was made for one */
+  double range[2];     /* of the field's finite values */
+  double quantiles[2]; /* where --range has shares of the volume: their values */
+  int64_t nonfinite;   /* how many of its values are not finite */
+  char *array;  /* what was read, as --array would name it; NULL: coefficients, or uniform matter without labels */
   bool uniform; /* nothing else is there to be drawn: matter, in the colours of the array's labels if there is one */
   Matter matter;
   double read_seconds, prepare_seconds;

@@ -64,25 +64,7 @@ TetcastStatus surfaces_outline(TetcastScene *scene, const RenderOptions *options
   return tetcast_scene_set_outline(scene, color);
 }
 
-TetcastStatus surfaces_set(TetcastScene *scene, const RenderOptions *options,
-                           const TetcastTransferFunction *transfer_function, const double range[2]) {
-  if (!render_options_surfaces(options))
-    return TETCAST_OK;
-  TetcastSlice slices[TETCAST_MAX_SLICES];
-  TetcastBoundary boundary;
-  for (int i = 0; i < options->slices.count; i++)
-    surfaces_parse_slice(options->slices.text[i], &slices[i]);
-  TetcastStatus status = set_isosurfaces(scene, &options->isosurfaces, transfer_function, range);
-  if (status == TETCAST_OK)
-    status = tetcast_scene_set_slices(scene, slices, options->slices.count);
-  if (status == TETCAST_OK && options->surface && surfaces_parse_boundary(options->surface, &boundary)) {
-    boundary.edges = render_options_given(options, OPTION_EDGES);
-    if (boundary.edges && *options->edges)
-      surfaces_parse_color(options->edges, boundary.edge_color);
-    status = tetcast_scene_set_boundary(scene, &boundary);
-  }
-  if (status != TETCAST_OK)
-    return status;
+static TetcastStatus set_light(TetcastScene *scene, const RenderOptions *options) {
   TetcastLight lights[TETCAST_MAX_LIGHTS];
   TetcastShadingDesc desc = tetcast_shading_desc_default();
   if (render_options_given(options, OPTION_SHADE))
@@ -98,5 +80,27 @@ TetcastStatus surfaces_set(TetcastScene *scene, const RenderOptions *options,
     surfaces_parse_light(options->lights.text[i], &lights[i]);
   desc.lights = lights;
   desc.light_count = options->lights.count;
+  desc.shadows = options->shadows;
+  desc.occlusion_rays = (int)options->ambient_occlusion;
   return tetcast_scene_set_shading(scene, &desc);
+}
+
+TetcastStatus surfaces_set(TetcastScene *scene, const RenderOptions *options,
+                           const TetcastTransferFunction *transfer_function, const double range[2]) {
+  if (!render_options_surfaces(options))
+    return render_options_lit(options) ? set_light(scene, options) : TETCAST_OK;
+  TetcastSlice slices[TETCAST_MAX_SLICES];
+  TetcastBoundary boundary;
+  for (int i = 0; i < options->slices.count; i++)
+    surfaces_parse_slice(options->slices.text[i], &slices[i]);
+  TetcastStatus status = set_isosurfaces(scene, &options->isosurfaces, transfer_function, range);
+  if (status == TETCAST_OK)
+    status = tetcast_scene_set_slices(scene, slices, options->slices.count);
+  if (status == TETCAST_OK && options->surface && surfaces_parse_boundary(options->surface, &boundary)) {
+    boundary.edges = render_options_given(options, OPTION_EDGES);
+    if (boundary.edges && *options->edges)
+      surfaces_parse_color(options->edges, boundary.edge_color);
+    status = tetcast_scene_set_boundary(scene, &boundary);
+  }
+  return status == TETCAST_OK ? set_light(scene, options) : status;
 }

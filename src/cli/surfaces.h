@@ -11,8 +11,8 @@
 TetcastStatus surfaces_set_colors(TetcastContext *context, TetcastScene *scene,
                                   const TetcastTransferFunction *transfer_function);
 
-/* Gives the scene its surfaces and light. Isosurfaces without a colour of their own have that of `transfer_function`;
- * `range` is that of the field's values. */
+/* Gives the scene its surfaces, and the light on these and in the volume. Isosurfaces without a colour of their own
+ * have that of `transfer_function`; `range` is that of the field's values. */
 TetcastStatus surfaces_set(TetcastScene *scene, const RenderOptions *options,
                            const TetcastTransferFunction *transfer_function, const double range[2]);
 

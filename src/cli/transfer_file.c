@@ -28,7 +28,7 @@ static double *load_knots(const char *place, const char *key, const json_t *rows
 }
 
 static bool check_keys(const char *place, const json_t *root) {
-  static const char *const known[] = {"color", "extinction", "opacity", "unit_distance"};
+  static const char *const known[] = {"color", "extinction", "opacity", "unit_distance", "at", "second", "rows"};
   void *position = json_object_iter((json_t *)root);
   for (; position; position = json_object_iter_next((json_t *)root, position)) {
     const char *key = json_object_iter_key(position);
@@ -114,15 +114,70 @@ static TetcastTransferFunction *create(TetcastContext *context, const char *plac
   return result;
 }
 
-TetcastTransferFunction *transfer_file_load(TetcastContext *context, const RenderOptions *options) {
+/* Reads the rows; false after a message. */
+static bool load_rows(TetcastContext *context, const char *place, const json_t *list, const RenderOptions *options,
+                      TransferRows *rows) {
+  for (size_t i = 0; i < json_array_size(list); i++) {
+    const json_t *row = json_array_get(list, i), *at = json_object_get(row, "at");
+    char *here = cli_print("%s: rows[%zu]", place, i);
+    TetcastTransferFunction *function = NULL;
+    if (!json_is_object(row) || !json_is_number(at))
+      cli_error("%s: expected {\"at\": value, \"color\": …, \"extinction\": …}", here);
+    else if (i > 0 && !(json_number_value(at) > rows->row[i - 1].at))
+      cli_error("%s: at %g is not above the row before it, at %g", here, json_number_value(at), rows->row[i - 1].at);
+    else
+      function = create(context, here, row, options);
+    free(here);
+    if (!function)
+      return false;
+    rows->row[rows->count++] = (TetcastTransferRow){.at = json_number_value(at), .transfer_function = function};
+  }
+  return true;
+}
+
+/* A transfer function of either kind. */
+static TetcastTransferFunction *load(TetcastContext *context, const char *place, const json_t *root,
+                                     const RenderOptions *options, TransferRows *rows) {
+  const json_t *list = json_object_get(root, "rows"), *second = json_object_get(root, "second");
+  if (!list && !second && !json_object_get(root, "at"))
+    return create(context, place, root, options);
+  const size_t count = json_array_size(list);
+  if (!json_is_string(second) || count < 1 || count > TETCAST_MAX_ROWS || json_object_size(root) != 2) {
+    cli_error(
+        "%s: expected {\"second\": \"gradient\" or the name of a cell array, \"rows\": [from 1 to %d rows]}, and no "
+        "more",
+        place, TETCAST_MAX_ROWS);
+    return NULL;
+  }
+  if (!load_rows(context, place, list, options, rows)) {
+    for (int i = 0; i < rows->count; i++)
+      tetcast_transfer_function_destroy((TetcastTransferFunction **)(void *)&rows->row[i].transfer_function);
+    rows->count = 0;
+    return NULL;
+  }
+  if (strcmp(json_string_value(second), "gradient"))
+    rows->second = cli_duplicate(json_string_value(second));
+  rows->source = json_deep_copy(root);
+  return (TetcastTransferFunction *)rows->row[0].transfer_function;
+}
+
+TetcastTransferFunction *transfer_file_load(TetcastContext *context, const RenderOptions *options, TransferRows *rows) {
   if (options->transfer_object) {
     char *place = cli_print("%s: transfer", options->scene);
-    TetcastTransferFunction *result = create(context, place, options->transfer_object, options);
+    TetcastTransferFunction *result = load(context, place, options->transfer_object, options, rows);
     free(place);
     return result;
   }
   json_t *root = cli_json_read(options->transfer);
-  TetcastTransferFunction *result = root ? create(context, options->transfer, root, options) : NULL;
+  TetcastTransferFunction *result = root ? load(context, options->transfer, root, options, rows) : NULL;
   json_decref(root);
   return result;
+}
+
+void transfer_file_release(TransferRows *rows) {
+  for (int i = 1; i < rows->count; i++)
+    tetcast_transfer_function_destroy((TetcastTransferFunction **)(void *)&rows->row[i].transfer_function);
+  free(rows->second);
+  json_decref(rows->source);
+  *rows = (TransferRows){.count = 0};
 }

@@ -158,7 +158,9 @@ TC_INLINE void tc_groups_at(const unsigned on, const TcCoefficients *c, const Tc
     tc_groups_at_lanes(on, c->points, groups, mask, walk, values);
 }
 
-TC_NOINLINE void tc_groups_enter(const TcGatherJob *job, TcGroups *groups, TcMask mask, const TcPacket *walk) {
+TC_NOINLINE void tc_groups_enter(const unsigned on, const TcGatherJob *job, TcGroups *groups, TcMask mask,
+                                 const TcPacket *walk) {
+  (void)on;
   tc_groups_at(0, job->coefficients, groups, mask, walk, groups->near);
 }
 

@@ -26,7 +26,7 @@ TC_INLINE void tc_count_end(const unsigned on, const TcGatherJob *job, TcCount *
   TC_EACH_LANE sums[0][l] = (double)TC_AT(count->cells, l);
 }
 
-#define tc_count_enter(job, count, mask, walk)           ((void)0)
+#define tc_count_enter(on, job, count, mask, walk)       ((void)0)
 #define tc_count_complete(on, job, count, active, steps) tc_none()
 
 #endif

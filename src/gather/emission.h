@@ -8,8 +8,10 @@
 #ifndef TC_GATHER_EMISSION_H
 #define TC_GATHER_EMISSION_H
 
+#include "gather/lit.h"
 #include "gather/pieces.h"
 #include "gather/seam.h"
+#include "gather/second.h"
 #include "gather/surfaces.h"
 #include "optics/segment_lanes.h"
 
@@ -29,6 +31,10 @@ typedef struct TcEmission {
   _Alignas(64) double color[3][TC_LANES], depth[TC_LANES], transmittance[TC_LANES];
   /* With TC_SURFACES: where the lanes are among the surfaces. */
   TcLayers layers;
+  /* With TC_LIT: the light at the face where the lanes are. */
+  TcLit lit;
+  /* With TC_SECOND: the places among the rows of the cells that the lanes are in. */
+  TcVec place;
 } TcEmission;
 
 TC_INLINE void tc_emission_begin(const TcGatherJob *job, TcEmission *e) {
@@ -96,10 +102,32 @@ TC_INLINE void tc_emission_move(TcEmission *e, TcMask mask, TcVec length, TcVec 
 #endif
 }
 
+#if !TC_SINGLE
+/* Adds the light of parts of segments that are lit (lit.h); `near` and `far` as in tc_emission_part(). */
+TC_INLINE void tc_emission_lit(const unsigned on, TcEmission *e, const TcLitSegments *segments, TcVec near, TcVec far,
+                               const TcLitEnds *lit) {
+  const TcLanePieces *piece = &e->piece;
+  const TcVec before = e->block_transmittance, w0 = before * segments->w0, w1 = before * segments->w1,
+              across = before * segments->middle * (far - near), moment0 = w0 * near, moment1 = w1 * far;
+  TcVec sum = w0, moment = w0, highlight = w0;
+  TC_UNROLLED for (int k = 0; k < 3; ++k) {
+    if (k == 0 || on & TC_TINTED) {
+      const int h = k + TC_LIGHT_WIDTH(on) / 2;
+      const TcVec l0 = lit->near.at[k], l1 = lit->far.at[k];
+      sum = tc_madd(w0, l0, w1 * l1);
+      moment = tc_madd(moment0, l0, moment1 * l1) - across * (l1 - l0);
+      highlight = tc_madd(w0, lit->near.at[h], w1 * lit->far.at[h]);
+    }
+    e->block_color[k] += tc_madd(sum, piece->color[k], tc_madd(moment, piece->color_rise[k], highlight));
+  }
+  e->block_transmittance -= w0 + w1;
+}
+#endif
+
 /* Adds parts of segments that lie within the lanes' pieces. Lanes to which nothing is to be added are given a length of
- * 0 and the scalar piece->from. */
+ * 0 and the scalar piece->from. `lit` is the light at their ends with TC_LIT. */
 TC_INLINE void tc_emission_part(const unsigned on, TcEmission *e, TcReal thin, TcMask mask, TcVec length, TcVec s0,
-                                TcVec s1) {
+                                TcVec s1, const TcLitEnds *lit) {
   const TcLanePieces *piece = &e->piece;
   TcVec near = s0 - piece->from, far = s1 - piece->from;
   if (on & TC_SCALED)
@@ -112,6 +140,14 @@ TC_INLINE void tc_emission_part(const unsigned on, TcEmission *e, TcReal thin, T
     tc_layers_descend(&e->layers, mask, a, a1, depth, length);
   if (!(on & TC_COLORED))
     return;
+#if !TC_SINGLE
+  if (on & TC_LIT) {
+    const TcLitSegments lit_segments = tc_segments_lit(mask, a, a1, depth, half_a1 - half_a);
+    tc_emission_lit(on, e, &lit_segments, near, far, lit);
+    return;
+  }
+#endif
+  (void)lit;
   const TcSegments segments = tc_segments(mask, a, a1, depth, half_a1 - half_a, thin);
   const TcVec w0 = e->block_transmittance * segments.w0, w1 = e->block_transmittance * segments.w1, sum = w0 + w1;
   const TcVec moment = tc_madd(w0, near, w1 * far);
@@ -125,8 +161,8 @@ TC_INLINE void tc_emission_part(const unsigned on, TcEmission *e, TcReal thin, T
  * computed from differences of scalars instead of differences of positions along the segment, so that nothing cancels.
  */
 TC_NOINLINE void tc_emission_parts(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask,
-                                   const TcVec *whole_length, const TcVec *begin, const TcVec *end,
-                                   const TcVec *spread) {
+                                   const TcVec *whole_length, const TcVec *begin, const TcVec *end, const TcVec *spread,
+                                   const TcLitEnds *lit) {
   const TcPieces *pieces = job->pieces;
   TcLanePieces *piece = &e->piece;
   const TcVec zero = tc_set(0), length = *whole_length, s0 = *begin, s1 = *end, whole = tc_abs(s1 - s0);
@@ -136,8 +172,11 @@ TC_NOINLINE void tc_emission_parts(const unsigned on, const TcGatherJob *job, Tc
   const TcMask rising = tc_and(up, tc_and(tc_le(piece->low, done), tc_lt(done, piece->high)));
   const TcMask falling = tc_and_not(tc_and(tc_lt(piece->low, done), tc_le(done, piece->high)), up);
   const TcMask misplaced = tc_and_not(mask, tc_or(rising, falling));
-  if (tc_any(misplaced))
+  if (tc_any(misplaced)) {
     tc_pieces_locate(pieces, misplaced, &done, piece);
+    if (on & TC_SECOND)
+      tc_second_load(job->second, e->place, piece);
+  }
   for (;;) {
     const TcMask crossing =
         tc_and(mask, tc_or(tc_and(up, tc_lt(piece->high, s1)), tc_and_not(tc_lt(s1, piece->low), up)));
@@ -148,8 +187,14 @@ TC_NOINLINE void tc_emission_parts(const unsigned on, const TcGatherJob *job, Tc
     if (tc_any(tc_and(mask, piece->filled))) {
       if (++e->block_parts == 64)
         tc_emission_end_block(on, e);
+      TcLitEnds part_lit, *between = NULL;
+      if (on & TC_LIT) {
+        between = &part_lit;
+        tc_lit_between(on, lit, tc_select(flat, zero, tc_abs(done - s0) * ratio),
+                       tc_select(flat, tc_set(1), tc_abs(to - s0) * ratio), &part_lit);
+      }
       tc_emission_part(on, e, (TcReal)job->tolerance.thin, mask, tc_select(mask, part, zero),
-                       tc_select(mask, done, piece->from), tc_select(mask, to, piece->from));
+                       tc_select(mask, done, piece->from), tc_select(mask, to, piece->from), between);
     }
     if (on & TC_SURFACES)
       e->layers.position += tc_select(mask, part, zero);
@@ -159,6 +204,8 @@ TC_NOINLINE void tc_emission_parts(const unsigned on, const TcGatherJob *job, Tc
     const TcVec number = tc_to_real(next);
     const TcMask valid = tc_and(crossing, tc_and(tc_le(zero, number), tc_le(number, tc_set((TcReal)pieces->count))));
     tc_pieces_load(pieces, tc_select_int(valid, next, piece->at), piece);
+    if (on & TC_SECOND)
+      tc_second_load(job->second, e->place, piece);
     const TcMask reached = tc_or(tc_and(up, tc_lt(piece->low, s1)), tc_and_not(tc_lt(s1, piece->high), up));
     const TcMask further = tc_or(tc_and(up, tc_lt(piece->high, s1)), tc_and_not(tc_lt(s1, piece->low), up));
     mask = tc_and(tc_and(valid, reached), tc_or(piece->filled, further));
@@ -168,9 +215,9 @@ TC_NOINLINE void tc_emission_parts(const unsigned on, const TcGatherJob *job, Tc
   }
 }
 
-/* A stretch of segments, from the scalar s0 to s1. */
+/* A stretch of segments, from the scalar s0 to s1, with the light at its ends if TC_LIT. */
 TC_INLINE void tc_emission_stretch(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask,
-                                   TcVec whole_length, TcVec s0, TcVec s1, TcVec spread) {
+                                   TcVec whole_length, TcVec s0, TcVec s1, TcVec spread, const TcLitEnds *lit) {
   TcLanePieces *piece = &e->piece;
   /* A cell with a NaN at any vertex is transparent; its two faces have all four vertices between them. */
   mask = tc_and(mask, tc_and(tc_eq(s0, s0), tc_eq(s1, s1)));
@@ -184,7 +231,7 @@ TC_INLINE void tc_emission_stretch(const unsigned on, const TcGatherJob *job, Tc
     }
   } else if (TC_UNLIKELY(tc_any(tc_and_not(mask, here)))) {
     const TcVec length = whole_length, begin = s0, end = s1, spread_of_all = spread;
-    tc_emission_parts(on, job, e, mask, &length, &begin, &end, &spread_of_all);
+    tc_emission_parts(on, job, e, mask, &length, &begin, &end, &spread_of_all, lit);
     return;
   } else if (on & TC_BOUND) {
     tc_emission_move(e, mask, whole_length, s0, s1, spread);
@@ -194,7 +241,7 @@ TC_INLINE void tc_emission_stretch(const unsigned on, const TcGatherJob *job, Tc
   const TcVec length = tc_select(mask, whole_length, tc_set(0));
   s0 = tc_select(mask, s0, piece->from);
   if (!(on & TC_CELLS)) {
-    tc_emission_part(on, e, (TcReal)job->tolerance.thin, mask, length, s0, tc_select(mask, s1, piece->from));
+    tc_emission_part(on, e, (TcReal)job->tolerance.thin, mask, length, s0, tc_select(mask, s1, piece->from), lit);
     return;
   }
   TcVec near = s0 - piece->from;
@@ -233,10 +280,7 @@ TC_NOINLINE void tc_emission_boundary(const TcGatherJob *job, TcEmission *e, TcM
   mask = tc_and(mask, tc_eq(*s, *s));
   for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
     const int l = __builtin_ctz(lanes);
-    uint32_t id[3];
-    for (int k = 0; k < 3; ++k)
-      id[k] = enter ? TC_AT(passage->entry->id[k], l) : TC_AT(passage->walk->v[k].id, l);
-    tc_meet_boundary(job, passage, l, id, enter, (double)TC_AT(*s, l), &meeting);
+    tc_meet_boundary(job, passage, l, enter, (double)TC_AT(*s, l), &meeting);
   }
   tc_emission_surface(e, mask, &meeting);
   const TcVec depth = enter ? passage->entry->z : passage->walk->at.z;
@@ -272,7 +316,8 @@ TC_NOINLINE void tc_emission_within(const TcGatherJob *job, TcEmission *e, TcMas
  * length is rounded to 0 is met all the same; where it is met follows from differences of scalars, as with knots. A
  * slice is met at its depth, which is in one of the half-open intervals that make up a ray. */
 TC_NOINLINE void tc_emission_meet(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask,
-                                  const TcVec *scalar0, const TcVec *scalar1, const TcPassage *passage) {
+                                  const TcVec *scalar0, const TcVec *scalar1, const TcPassage *passage,
+                                  const TcLitEnds *lit) {
   TcLayers *layers = &e->layers;
   const TcPacket *walk = passage->walk;
   const TcVec zero = tc_set(0), one = tc_set(1), s0 = *scalar0, s1 = *scalar1, ratio = 1 / tc_abs(s1 - s0);
@@ -308,7 +353,12 @@ TC_NOINLINE void tc_emission_meet(const unsigned on, const TcGatherJob *job, TcE
     even = tc_or(even, first);
     const TcVec share = tc_select(even, at - done, tc_abs(to - from) * ratio);
     layers->position = tc_madd(done, length, passage->begin);
-    tc_emission_stretch(on, job, e, tc_and(mask, left), length * share, from, to, spread * share);
+    TcLitEnds stretch_lit, *between = NULL;
+    if (on & TC_LIT) {
+      between = &stretch_lit;
+      tc_lit_between(on, lit, done, at, between);
+    }
+    tc_emission_stretch(on, job, e, tc_and(mask, left), length * share, from, to, spread * share, between);
     const TcMask met = tc_or(crossing, first);
     if (!tc_any(met))
       break;
@@ -335,23 +385,51 @@ TC_INLINE TcMask tc_emission_meets(const unsigned on, const TcGatherJob *job, co
   return meets;
 }
 
+/* The light at the ends of what counts of the cells just crossed. */
+TC_INLINE void tc_emission_light(const unsigned on, const TcGatherJob *job, TcEmission *e, const TcPassage *passage,
+                                 TcLitEnds *lit) {
+  lit->near = e->lit;
+  tc_lit_face(on, job->lights, passage->walk, &lit->far);
+  for (int j = 0; j < TC_LIGHT_WIDTH(on); ++j) /* lanes that rest are at no face */
+    e->lit.at[j] = lit->far.at[j] = tc_select(passage->crossed, lit->far.at[j], e->lit.at[j]);
+  if (TC_UNLIKELY(passage->partial)) {
+    const TcLitEnds whole = *lit;
+    tc_lit_between(on, &whole, passage->from, passage->to, lit);
+  }
+}
+
 TC_INLINE void tc_emission_segment(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask,
                                    const TcPassage *passage) {
   TcVec s0 = passage->s0, s1 = passage->s1;
   if (on & TC_CELLS)
     s0 = s1 = tc_cell_values(job, on & TC_SURFACES ? passage->crossed : mask, passage->cell);
+  if (on & TC_SECOND) {
+    e->place = tc_second_cells(on, job->second, passage->cell);
+    tc_second_load(job->second, e->place, &e->piece);
+  }
+  TcLitEnds ends, *lit = NULL;
+  if (on & TC_LIT) {
+    lit = &ends;
+    tc_emission_light(on, job, e, passage, lit);
+  }
   if (on & TC_SURFACES && TC_UNLIKELY(tc_any(tc_emission_meets(on, job, e, mask, s0, s1, passage)))) {
     const TcVec scalar0 = s0, scalar1 = s1;
-    tc_emission_meet(on, job, e, mask, &scalar0, &scalar1, passage);
+    tc_emission_meet(on, job, e, mask, &scalar0, &scalar1, passage, lit);
     return;
   }
   if (on & TC_SURFACES)
     e->layers.position = passage->begin;
-  tc_emission_stretch(on, job, e, mask, passage->length, s0, s1, on & TC_BOUND ? passage->spread : tc_set(0));
+  tc_emission_stretch(on, job, e, mask, passage->length, s0, s1, on & TC_BOUND ? passage->spread : tc_set(0), lit);
 }
 
-TC_INLINE void tc_emission_enter(const TcGatherJob *job, TcEmission *e, TcMask mask, const TcPacket *walk) {
-  (void)walk;
+TC_INLINE void tc_emission_enter(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask mask,
+                                 const TcPacket *walk) {
+  if (on & TC_LIT) {
+    TcLit lit;
+    tc_lit_face(on, job->lights, walk, &lit);
+    for (int j = 0; j < TC_LIGHT_WIDTH(on); ++j)
+      e->lit.at[j] = tc_select(mask, lit.at[j], e->lit.at[j]);
+  }
   if (job->surfaces) {
     tc_layers_forget(&e->layers, mask);
     e->layers.entering = tc_or(e->layers.entering, mask);
@@ -376,8 +454,11 @@ TC_INLINE TcMask tc_emission_complete(const unsigned on, const TcGatherJob *job,
   const TcVec before = tc_load(e->transmittance), left = before * e->block_transmittance;
   for (int k = 0; k < 3; ++k) {
     const TcVec color = tc_madd(before, e->block_color[k], tc_load(e->color[k]));
-    const double largest =
-        on & TC_SURFACES ? fmax(job->pieces->largest[k], job->surfaces->largest[k]) : job->pieces->largest[k];
+    double largest = job->pieces->largest[k];
+    if (on & TC_LIT)
+      largest = job->lights->factor * largest + job->lights->highlight;
+    if (on & TC_SURFACES)
+      largest = fmax(largest, job->surfaces->largest[k]);
     done = tc_and(done, tc_le(left * largest, 0x1p-54 * color));
   }
   if (on & TC_SURFACES)

@@ -52,13 +52,13 @@ TC_INLINE void tc_gather_begin(const int which, const TcGatherJob *job, TcGather
   }
 }
 
-TC_INLINE void tc_gather_enter(const int which, const TcGatherJob *job, TcGather *g, TcMask mask,
+TC_INLINE void tc_gather_enter(const int which, const unsigned on, const TcGatherJob *job, TcGather *g, TcMask mask,
                                const TcPacket *walk) {
-  (void)job, (void)g, (void)mask, (void)walk; /* not all gatherers use these */
+  (void)on, (void)job, (void)g, (void)mask, (void)walk; /* not all gatherers use these */
   switch (which) {
 #define TC_GATHERER(name, type)                                                                                        \
   case TC_GATHER_##name:                                                                                               \
-    tc_##name##_enter(job, &g->name, mask, walk);                                                                      \
+    tc_##name##_enter(on, job, &g->name, mask, walk);                                                                  \
     break;
     TC_GATHERERS(TC_GATHERER)
 #undef TC_GATHERER

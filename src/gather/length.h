@@ -30,7 +30,7 @@ TC_INLINE void tc_length_end(const unsigned on, const TcGatherJob *job, TcLength
     sums[0][l] = (double)TC_AT(length->sum, l);
 }
 
-#define tc_length_enter(job, length, mask, walk)           ((void)0)
+#define tc_length_enter(on, job, length, mask, walk)       ((void)0)
 #define tc_length_complete(on, job, length, active, steps) tc_none()
 
 #endif

@@ -39,6 +39,6 @@ TC_INLINE void tc_sampled_end(const unsigned on, const TcGatherJob *job, TcSampl
     sums[k][0] = rgba[k];
 }
 
-#define tc_sampled_enter(job, light, mask, walk) ((void)0)
+#define tc_sampled_enter(on, job, light, mask, walk) ((void)0)
 
 #endif

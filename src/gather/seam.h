@@ -5,7 +5,7 @@
  *
  * - begin(job, state): the packet has new rays.
  *
- * - enter(job, state, mask, walk): the rays of the lanes in `mask` begin a path at a face of the shell.
+ * - enter(on, job, state, mask, walk): the rays of the lanes in `mask` begin a path at a face of the shell.
  *
  * - segment(on, job, state, mask, passage): the rays of the lanes in `mask` have crossed a cell, or the part of it that
  *   counts. The state of other lanes must stay as it is.
@@ -23,20 +23,24 @@
 #include <tetcast/blend.h>
 
 #include "base/lanes.h"
+#include "optics/second.h"
 #include "optics/tolerance.h"
 #include "volume/coefficients.h"
+#include "walk/lights.h"
 #include "walk/packet.h"
 
 /* What gatherers are given; each of them uses a part of it. */
 typedef struct TcGatherJob {
   int sums;                           /* how many numbers end() hands out for each lane */
   const TcPieces *pieces;             /* the transfer function, in the volume's units */
+  const TcSecond *second;             /* with TC_SECOND: what the transfer function is in cells; pieces are its hull */
   const TcRows *values;               /* the scalar */
   TcTolerance tolerance;              /* of emission and absorption */
   const struct TcSampler *sampler;    /* of the integrators that are compared with */
   const TcCoefficients *coefficients; /* extinction and emission as fields */
   TetcastBlend blend;                 /* which number is made of the values along a ray */
   const TcSurfaces *surfaces;         /* with TC_SURFACES: isosurfaces, slices and the boundary */
+  const TcLights *lights;             /* with TC_LIT: the light in the volume */
   bool to_the_end;                    /* of coefficients: opaque rays go on, as what lies behind is wanted too */
   double rounding;                    /* with TC_BOUND: the rounding of an interpolated value, relative to it */
   int exponent;                       /* the volume's unit of length is 2^exponent of the mesh's */

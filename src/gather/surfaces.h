@@ -164,15 +164,38 @@ static void tc_meet_normal(const TcPacket *walk, int l, const double normal[3], 
     TC_AT(meeting->normal[k], l) = (TcReal)(length != 0 ? normal[k] / length : 0);
 }
 
-/* Light on a surface with this normal, of any length; `away` if it points away from the eye. */
-static void tc_meet_light(const TcGatherJob *job, const TcPacket *walk, int l, double normal[3], bool away,
-                          double color[3]) {
-  double along[3];
+/* The shares of light that arrive at `fraction` of the way that lane l went through a cell; NULL: all of it. */
+static const double *tc_surface_open(const TcSurfaces *surfaces, const TcPassage *passage, int l, double fraction,
+                                     double open[1 + TETCAST_MAX_LIGHTS]) {
+  const int width = surfaces->open_width;
+  if (!surfaces->open)
+    return NULL;
+  for (int i = 0; i < width; ++i)
+    open[i] = 0;
   for (int k = 0; k < 3; ++k) {
-    along[k] = TC_AT(walk->along[k], l);
+    const float *first = surfaces->open + (size_t)width * TC_AT(passage->entry->id[k], l),
+                *last = surfaces->open + (size_t)width * TC_AT(passage->walk->v[k].id, l);
+    const double from = (1 - fraction) * (double)TC_AT(passage->entry->barycentric[k], l),
+                 to = fraction * (double)TC_AT(passage->walk->at.barycentric[k], l);
+    for (int i = 0; i < width; ++i)
+      open[i] += from * (double)first[i] + to * (double)last[i];
+  }
+  return open;
+}
+
+/* Light on a surface with this normal, of any length, at `fraction` of the way through a cell; `away` if the normal
+ * points away from the eye. */
+static void tc_meet_light(const TcGatherJob *job, const TcPassage *passage, int l, double fraction, double normal[3],
+                          bool away, double color[3]) {
+  double along[3], open[1 + TETCAST_MAX_LIGHTS];
+  for (int k = 0; k < 3; ++k) {
+    along[k] = TC_AT(passage->walk->along[k], l);
     normal[k] = away ? -normal[k] : normal[k];
   }
-  tc_light_surface(job->surfaces->lighting, along, normal, color);
+  const TcReflection seen = tc_light_reflection(job->surfaces->lighting, along, normal,
+                                                tc_surface_open(job->surfaces, passage, l, fraction, open));
+  for (int k = 0; k < 3; ++k)
+    color[k] = color[k] * seen.factor[k] + seen.highlight[k];
 }
 
 /* Lane l meets isosurface `i`, from below if the scalar rises along the ray. */
@@ -187,8 +210,16 @@ static void tc_meet_isosurface(const TcGatherJob *job, const TcPassage *passage,
   if (job->surfaces->normal)
     tc_meet_normal(passage->walk, l, gradient, meeting);
   if (job->surfaces->lighting)
-    tc_meet_light(job, passage->walk, l, gradient, rises, color);
+    tc_meet_light(job, passage, l, fraction, gradient, rises, color);
   tc_meet(meeting, l, color, surface->opacity);
+}
+
+/* What the transfer function has at the scalar s in the cell that lane l was in. */
+static TcOptics tc_surface_optics(const TcGatherJob *job, const TcPassage *passage, int l, double s) {
+  if (!job->second || !job->second->cell)
+    return tc_pieces_at(job->pieces, s);
+  const double place = job->second->cell[passage->cell[l]];
+  return tc_second_at(job->second, job->pieces, isnan(place) ? 0 : place, s);
 }
 
 /* Lane l meets a slice where the scalar is s. Of several at one depth one is seen. */
@@ -197,7 +228,7 @@ static void tc_meet_slice(const TcGatherJob *job, const TcPassage *passage, cons
   int i = 0;
   while (i < job->surfaces->slice_count - 1 && TC_AT(passage->walk->slice[i], l) != TC_AT(layers->slice, l))
     ++i;
-  const TcOptics optics = tc_pieces_at(job->pieces, s);
+  const TcOptics optics = tc_surface_optics(job, passage, l, s);
   if (job->surfaces->normal)
     tc_meet_normal(passage->walk, l, job->surfaces->slice[i].normal, meeting);
   tc_meet(meeting, l, optics.color, job->surfaces->slice_opacity[i]);
@@ -230,17 +261,19 @@ static double tc_edge_coverage(const TcSurfaces *surfaces, const double along[3]
   return nearest < size ? 1 - nearest / size : 0;
 }
 
-/* Lane l meets the boundary, a face of these vertices where the scalar is s: the first one of the passage if it enters,
- * else the last. */
-static void tc_meet_boundary(const TcGatherJob *job, const TcPassage *passage, int l, const uint32_t id[3], bool enter,
-                             double s, TcMeeting *meeting) {
+/* Lane l meets the boundary where the scalar is s, at the face where it enters a cell or at the one where it leaves it.
+ */
+static void tc_meet_boundary(const TcGatherJob *job, const TcPassage *passage, int l, bool enter, double s,
+                             TcMeeting *meeting) {
   const TetcastBoundary *boundary = &job->surfaces->boundary;
   double color[3], position[3][3], edge[2][3], normal[3];
-  const TcOptics optics = tc_pieces_at(job->pieces, s);
+  const TcOptics optics = tc_surface_optics(job, passage, l, s);
   memcpy(color, boundary->colored ? boundary->color : optics.color, sizeof color);
   if (job->surfaces->lighting || job->surfaces->normal || boundary->edges) {
-    for (int k = 0; k < 3; ++k)
-      tc_volume_vertex(job->values->volume, id[k], position[k]);
+    for (int k = 0; k < 3; ++k) {
+      const uint32_t id = enter ? TC_AT(passage->entry->id[k], l) : TC_AT(passage->walk->v[k].id, l);
+      tc_volume_vertex(job->values->volume, id, position[k]);
+    }
     for (int k = 0; k < 3; ++k)
       edge[0][k] = position[1][k] - position[0][k], edge[1][k] = position[2][k] - position[0][k];
     tc_cross(edge[0], edge[1], normal);
@@ -251,7 +284,7 @@ static void tc_meet_boundary(const TcGatherJob *job, const TcPassage *passage, i
     double toward = 0;
     for (int k = 0; k < 3; ++k)
       toward -= normal[k] * TC_AT(passage->walk->along[k], l);
-    tc_meet_light(job, passage->walk, l, normal, toward < 0, color);
+    tc_meet_light(job, passage, l, enter ? 0 : 1, normal, toward < 0, color);
   }
   if (boundary->edges) {
     const TcPacket *walk = passage->walk;

@@ -60,7 +60,7 @@ TC_INLINE void tc_value_end(const unsigned on, const TcGatherJob *job, TcValue *
   }
 }
 
-#define tc_value_enter(job, v, mask, walk)           ((void)0)
+#define tc_value_enter(on, job, v, mask, walk)       ((void)0)
 #define tc_value_complete(on, job, v, active, steps) tc_none()
 
 #endif

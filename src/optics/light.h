@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Light on a surface (tetcast/shading.h has the formula). */
+/* Light where a normal is known: on a surface, at a vertex (tetcast/shading.h has the formula). */
 #ifndef TC_OPTICS_LIGHT_H
 #define TC_OPTICS_LIGHT_H
 
@@ -9,10 +9,18 @@
 
 #include "base/vec3.h"
 
-/* One direction has been made a unit vector. */
+/* Shares and lights' colours that are larger count as this, so that a colour up to 2^500 in all the light there can be
+ * doesn't overflow. */
+#define TC_LARGEST_LIGHT 0x1p200
+
+/* Directions are unit vectors. */
 typedef struct TcLighting {
-  /* Whether surfaces are lit. */
-  bool surfaces;
+  /* Whether surfaces are lit, and whether the volume is. */
+  bool surfaces, volume;
+  /* Whether the volume's shadows fall on what is lit. */
+  bool shadows;
+  /* In how many directions the volume is looked through for the share of the ambient light that arrives; 0: none. */
+  int occlusion_rays;
   /* Whether their normals are interpolated between vertices. */
   bool smooth;
   double ambient, diffuse, specular, exponent;
@@ -29,14 +37,21 @@ static inline void tc_light_reflect(const TcLighting *lighting, double cosine, d
   *specular = cosine > 0 && half > 0 && lighting->specular > 0 ? lighting->specular * pow(half, lighting->exponent) : 0;
 }
 
-/* The colour, as it is seen along the unit vector `along` from the eye, of a surface with this normal on the side that
- * is seen, of any length. An interpolated one may turn away from the eye at the rim of what is seen; it is lit as it
- * stands, so that light changes steadily up to the rim. */
-static inline void tc_light_surface(const TcLighting *lighting, const double along[3], const double normal[3],
-                                    double color[3]) {
+/* What is seen of a colour c is c · factor + highlight. */
+typedef struct TcReflection {
+  double factor[3], highlight[3];
+} TcReflection;
+
+/* The light that is seen along the unit vector `along` from the eye where this is the normal, of any length, on the
+ * side that is seen. An interpolated one may turn away from the eye at the rim of what is seen; it is lit as it stands,
+ * so that light changes steadily up to the rim. open[0] is the share of the ambient light that arrives there, open[1 +
+ * i] that of light i; NULL: all of it. */
+static inline TcReflection tc_light_reflection(const TcLighting *lighting, const double along[3],
+                                               const double normal[3], const double *open) {
   double n[3] = {normal[0], normal[1], normal[2]};
   const bool any = tc_normalize(n);
-  double factor[3] = {lighting->ambient, lighting->ambient, lighting->ambient}, highlight[3] = {0, 0, 0};
+  const double ambient = open ? open[0] * lighting->ambient : lighting->ambient;
+  TcReflection result = {{ambient, ambient, ambient}, {0, 0, 0}};
   for (int i = 0; i < (lighting->light_count > 0 ? lighting->light_count : 1); ++i) {
     static const TetcastLight at_eye = {.color = {1, 1, 1}};
     const TetcastLight *light = lighting->light_count > 0 ? &lighting->light[i] : &at_eye;
@@ -51,16 +66,26 @@ static inline void tc_light_surface(const TcLighting *lighting, const double alo
       half = tc_normalize(middle) ? tc_dot(n, middle) : 0;
     }
     tc_light_reflect(lighting, cosine, half, &diffuse, &specular);
+    const double share = open && lighting->light_count > 0 ? open[1 + i] : 1;
     for (int k = 0; k < 3; ++k) {
-      factor[k] += diffuse * light->color[k];
-      highlight[k] += specular * light->color[k];
+      result.factor[k] += share * diffuse * light->color[k];
+      result.highlight[k] += share * specular * light->color[k];
     }
   }
-  for (int k = 0; k < 3; ++k)
-    color[k] = color[k] * factor[k] + highlight[k];
+  return result;
 }
 
-/* What no component of a lit colour exceeds, where the surface's is `color`. */
+/* Whether all light has the same red, green and blue. */
+static inline bool tc_light_is_gray(const TcLighting *lighting) {
+  bool gray = true;
+  for (int i = 0; i < lighting->light_count; ++i) {
+    const double *color = lighting->light[i].color;
+    gray = gray && color[0] == color[1] && color[1] == color[2];
+  }
+  return gray;
+}
+
+/* What no component of a lit colour exceeds, where `color` is what it is lit. */
 static inline double tc_light_largest(const TcLighting *lighting, double color) {
   double sum = lighting->light_count > 0 ? 0 : 1;
   for (int i = 0; i < lighting->light_count; ++i)

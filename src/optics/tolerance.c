@@ -18,9 +18,9 @@ static double largest_extinction(const TcPieces *pieces) {
   return largest;
 }
 
-TcTolerance tc_tolerance_begin(const TcPieces *pieces, double tolerance) {
+TcTolerance tc_tolerance_begin(const TcPieces *pieces, double brightest, double tolerance) {
   TcTolerance result = {.thin = -1, .opaque = TC_OPAQUE_DEPTH, .most = INFINITY};
-  result.color = fmax(1, fmax(pieces->largest[0], fmax(pieces->largest[1], pieces->largest[2])));
+  result.color = fmax(fmax(1, brightest), fmax(pieces->largest[0], fmax(pieces->largest[1], pieces->largest[2])));
   result.per_shift = 2.1 * result.color * largest_extinction(pieces);
   const double spare = tolerance - tc_rounding(1 << 14) * result.color;
   if (!(spare > 0))
@@ -42,7 +42,7 @@ bool tc_tolerance_single(const TcPieces *pieces, double tolerance, double larges
   const double u = 0x1p-24;
   if (pieces->scaled || pieces->count > 1 << 20)
     return false;
-  TcTolerance half = tc_tolerance_begin(pieces, 0.5 * tolerance);
+  TcTolerance half = tc_tolerance_begin(pieces, 0, 0.5 * tolerance);
   *values = largest;
   for (int64_t i = 0; i <= pieces->count; ++i) {
     const double *row = pieces->rows_f64[i];

@@ -51,8 +51,10 @@ typedef struct TcTolerance {
   double most;     /* single precision: a ray whose bound is above this is walked again in double precision */
 } TcTolerance;
 
-/* Spends half of `tolerance` on the evaluation of thin segments and half on ending rays. With 0, all is exact. */
-TcTolerance tc_tolerance_begin(const TcPieces *pieces, double tolerance);
+/* Spends half of `tolerance` on the evaluation of thin segments and half on ending rays. With 0, all is exact.
+ * `brightest` is the largest component of what is seen beside the transfer function's colours: surfaces, and these
+ * colours in a light. */
+TcTolerance tc_tolerance_begin(const TcPieces *pieces, double brightest, double tolerance);
 
 /* The same for single precision, to whose rounding half of the tolerance goes. False if that is not enough. `largest`
  * is the largest magnitude of the scalars, `length` the largest length of a ray in the mesh. *values becomes the

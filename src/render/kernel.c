@@ -110,7 +110,7 @@ TC_INLINE void advance(const int which, const unsigned on, const TcGround *given
     const TcMask starting = tc_mask_of(p->starting);
     if (p->starting) {
       tc_packet_set_out(on, &ground, p);
-      tc_gather_enter(which, job, &packet[i].gather, starting, p);
+      tc_gather_enter(which, on, job, &packet[i].gather, starting, p);
     }
     const TcMask resting = tc_and_not(tc_all(), p->active);
     tc_packet_forget(p, resting);
@@ -171,7 +171,7 @@ TC_INLINE void advance_cells(const int which, const unsigned on, const TcGround 
     if (!tc_cell_faces(on, ground, &p->rays, cell, &faces))
       continue;
     tc_cell_at(on, ground, p, &faces, 0);
-    tc_gather_enter(which, job, &packet->gather, 1, p);
+    tc_gather_enter(which, on, job, &packet->gather, 1, p);
     TcCrossed crossed = {.mask = 1, .z = p->at.z, .s0 = p->at.s, .tilt = p->at.tilt};
     for (int k = 0; on & TC_SURFACES && k < 3; ++k) {
       crossed.barycentric[k] = p->at.barycentric[k];
@@ -351,11 +351,13 @@ static State *prepare(const TcJob *job, TcWorker *worker) {
                              .surfaces = job->surfaces};
   state->job = (TcGatherJob){.sums = job->sums,
                              .pieces = job->pieces,
+                             .second = job->second,
                              .values = job->values,
                              .tolerance = job->tolerance,
                              .sampler = job->sampler,
                              .coefficients = job->coefficients,
                              .surfaces = job->surfaces,
+                             .lights = job->lights,
                              .blend = job->blend,
                              .to_the_end = job->to_the_end,
                              .exponent = job->shell->volume->exponent,

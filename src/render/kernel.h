@@ -5,11 +5,13 @@
 
 #include <tetcast/blend.h>
 
+#include "optics/second.h"
 #include "optics/tolerance.h"
 #include "volume/coefficients.h"
 #include "walk/clip.h"
 #include "walk/features.h"
 #include "walk/hits.h"
+#include "walk/lights.h"
 #include "walk/ray.h"
 #include "walk/screen.h"
 #include "walk/surfaces.h"
@@ -36,15 +38,17 @@ typedef struct TcJob {
   int kernel;    /* TC_KERNEL_… */
   bool one_lane; /* only kernels of one lane have it */
   const TcShell *shell;
-  const TcRows *values;            /* the scalar; NULL with coefficients */
-  const TcPieces *pieces;          /* the transfer function, in the volume's units; NULL if only values are gathered */
-  const TcScreen *screen;          /* the projected vertices; NULL if rays are walked in ray space */
-  TcTolerance tolerance;           /* of emission and absorption */
-  TcResolution resolution;         /* with TC_BOUND: what rounding does to vertices */
-  int sums;                        /* how many numbers are gathered for a ray */
-  const struct TcSampler *sampler; /* the integrator to compare with; NULL: the exact one */
+  const TcRows *values;    /* the scalar; NULL with coefficients */
+  const TcPieces *pieces;  /* the transfer function, in the volume's units; NULL if only values are gathered */
+  const TcSecond *second;  /* a transfer function of two dimensions, with `pieces` as its hull; NULL: it has one */
+  const TcScreen *screen;  /* the projected vertices; NULL if rays are walked in ray space */
+  TcTolerance tolerance;   /* of emission and absorption */
+  TcResolution resolution; /* with TC_BOUND: what rounding does to vertices */
+  int sums;                /* how many numbers are gathered for a ray */
+  const struct TcSampler *sampler;    /* the integrator to compare with; NULL: the exact one */
   const TcCoefficients *coefficients; /* NULL without */
   const TcSurfaces *surfaces;         /* isosurfaces, slices and the boundary; NULL: there are none */
+  const TcLights *lights;             /* light in the volume; NULL: there is none */
   TetcastBlend blend;                 /* if not composite, values are gathered, without pieces and coefficients */
   bool to_the_end;                    /* of coefficients: opaque rays go on, as what lies behind is wanted too */
   const struct TcIsaKernels *precise; /* single precision: the kernels with which rays are walked again */

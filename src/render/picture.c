@@ -80,8 +80,10 @@ static void see_through(const TcRows *values, const TcPieces *pieces, unsigned m
   job->values = values;
   job->pieces = pieces;
   job->sums = more & TC_BOUND ? 5 : !job->surfaces || !job->surfaces->depth ? 4 : job->surfaces->normal ? 9 : 6;
-  job->tolerance = tc_tolerance_begin(pieces, 0);
-  const unsigned needed = (pieces->one_color ? 0 : TC_COLORED) | (pieces->scaled ? TC_SCALED : 0) | more;
+  job->tolerance = tc_tolerance_begin(pieces, 0, 0);
+  const bool one_color = pieces->one_color && !job->lights && !job->second;
+  const unsigned needed =
+      (job->second ? TC_SECOND : 0) | (one_color ? 0 : TC_COLORED) | (pieces->scaled ? TC_SCALED : 0) | more;
   job->kernel = choose_row(job->sampler ? "sampled" : "emission", (job->sampler ? 0 : needed) | association_of(values),
                            &job->one_lane);
 }
@@ -103,8 +105,24 @@ void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job) {
     job->kernel = choose_row("value", association_of(scene->values), &job->one_lane);
     return;
   }
-  see_through(scene->values, &scene->prepared->scaled->pieces, measured | (job->surfaces ? TC_SURFACES : 0), job);
+  const unsigned lit = !job->lights ? 0 : job->lights->width == TC_LIGHT_TINTED ? TC_LIT | TC_TINTED : TC_LIT;
+  see_through(scene->values, &scene->prepared->scaled->pieces, measured | (job->surfaces ? TC_SURFACES : 0) | lit, job);
   job->shell = &scene->prepared->shell;
+}
+
+void tc_job_of_opacity(const TetcastScene *scene, TcJob *job) {
+  const TcPieces *pieces = &scene->prepared->scaled->pieces;
+  job->shell = &scene->prepared->shell;
+  job->values = scene->values;
+  job->pieces = pieces;
+  job->sums = 4;
+  job->tolerance = tc_tolerance_begin(pieces, 0, 0);
+  job->second = scene->row_count > 0 ? &scene->prepared->second : NULL;
+  job->kernel = choose_row(
+      "emission", (pieces->scaled ? TC_SCALED : 0) | (job->second ? TC_SECOND : 0) | association_of(scene->values),
+      &job->one_lane);
+  job->clip = scene->clip;
+  job->clip_count = scene->clip_count;
 }
 
 void tc_job_of(const TetcastVolume *volume, const TcRows *values, const TcPieces *pieces, TcJob *job) {
@@ -276,19 +294,31 @@ static bool allow_single(const TetcastScene *scene, const TetcastRenderDesc *des
   const TcIsaKernels *kernels = tc_single_kernels_for(desc->isa);
   TcJob *job = &render->job;
   double values;
-  if (!kernels || job->surfaces || !(desc->tolerance > 0) || job->values->association != TETCAST_POINT ||
-      job->values->has_holes || scene->volume->folds)
+  if (!kernels || job->surfaces || job->lights || job->second || !(desc->tolerance > 0) ||
+      job->values->association != TETCAST_POINT || job->values->has_holes || scene->volume->folds)
     return false;
   if (!tc_tolerance_single(job->pieces, desc->tolerance, scene->values->largest, 2 * scene->volume->radius,
                            &job->tolerance, &values))
     return false;
   render->precise = *job;
-  render->precise.tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);
+  render->precise.tolerance = tc_tolerance_begin(job->pieces, 0, desc->tolerance);
   job->precise = render->kernels;
   job->precise_job = &render->precise;
   render->kernels = kernels;
   job->resolution = tc_screen_resolution(scene->volume, setup, true, job->width, job->height, values);
   return true;
+}
+
+/* The largest component of what is seen beside the transfer function's own colours. */
+static double brightest_of(const TcJob *job) {
+  double brightest = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (job->surfaces)
+      brightest = fmax(brightest, job->surfaces->largest[k]);
+    if (job->lights)
+      brightest = fmax(brightest, job->lights->factor * job->pieces->largest[k] + job->lights->highlight);
+  }
+  return brightest;
 }
 
 /* Decides whether vertices are projected and which precision is used, and sets the tolerance and the error bounds'
@@ -308,7 +338,7 @@ static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *de
   job->resolution =
       on_screen ? tc_screen_resolution(scene->volume, &setup, false, job->width, job->height, largest) : in_ray_space;
   if (job->pieces)
-    job->tolerance = tc_tolerance_begin(job->pieces, desc->tolerance);
+    job->tolerance = tc_tolerance_begin(job->pieces, brightest_of(job), desc->tolerance);
   if (!on_screen)
     return TETCAST_OK;
   if (measured && job->pieces && allow_single(scene, desc, &setup, render)) {
@@ -379,6 +409,43 @@ static TetcastStatus run(TcRender *render, const TetcastRenderDesc *desc, Tetcas
   return status;
 }
 
+/* Surfaces, light in the volume and a transfer function's second dimension, as far as the scene has them. Of the
+ * kernels, one has white light alone, one surfaces, one the second dimension; what has more than one of these, or light
+ * of a colour, takes the kernel that has all. */
+static TetcastStatus find_looks(const TetcastScene *scene, const TetcastRenderDesc *desc, bool depth, bool normal,
+                                TcRender *render) {
+  TcJob *job = &render->job;
+  const bool surfaces = depth || tc_scene_has_surfaces(scene), lit = tc_scene_is_lit(scene),
+             rows = scene->row_count > 0;
+  const bool all = (int)surfaces + (int)lit + (int)rows > 1 || (lit && !tc_light_is_gray(&scene->lighting));
+  TetcastStatus status = TETCAST_OK;
+  if (surfaces || all) {
+    status = tc_scene_surfaces(scene, desc->isa, normal, &render->surfaces);
+    render->surfaces.depth = depth;
+    render->surfaces.view = &job->view;
+    render->surfaces.pixel = 2 * sqrt(tc_dot(job->view.up, job->view.up)) / (double)job->height;
+    job->surfaces = &render->surfaces;
+  }
+  render->lights = (TcLights){.width = TC_LIGHT_TINTED, .factor = 1};
+  if (!status && lit)
+    status = tc_scene_lights(scene, desc->isa, &job->view, all ? TC_LIGHT_TINTED : TC_LIGHT_GRAY, &render->lights);
+  if (lit || all)
+    job->lights = &render->lights;
+  if (rows)
+    job->second = &scene->prepared->second;
+  if (!status && all && !rows) {
+    TetcastTransferFunction *only = scene->prepared->scaled;
+    status = tc_second_build(scene->context, &only, 1, &only->pieces, &render->second);
+    job->second = &render->second;
+  }
+  return status;
+}
+
+static void forget_looks(TetcastContext *context, TcRender *render) {
+  tc_lights_clear(context, &render->lights);
+  tc_second_clear(context, &render->second);
+}
+
 TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *given,
                               TetcastFrame *frame, TetcastRenderStats *stats) {
   TetcastContext *context = scene->context;
@@ -391,7 +458,8 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
   const bool normal = tc_frame_channel(frame, TETCAST_CHANNEL_NORMAL) != NULL,
              depth = normal || tc_frame_channel(frame, TETCAST_CHANNEL_DEPTH);
-  const bool measured = exact && !scene->blend && !depth && !tc_scene_has_surfaces(scene) &&
+  const bool measured = exact && !scene->blend && !depth && !tc_scene_has_surfaces(scene) && !tc_scene_is_lit(scene) &&
+                        scene->row_count == 0 &&
                         (desc->tolerance > 0 || tc_frame_channel(frame, TETCAST_CHANNEL_ERROR));
   TcRender render = {.scene = scene, .frame = frame};
   TcJob *job = &render.job;
@@ -402,18 +470,15 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
       tc_view_create(context, camera, scene->volume, (double)frame->width / (double)frame->height, &job->view);
   if (!status && !scene->coefficients && !scene->blend)
     status = tc_scene_prepare(scene);
-  if (!status && !scene->coefficients && !scene->blend && (depth || tc_scene_has_surfaces(scene))) {
-    status = tc_scene_surfaces(scene, normal, &render.surfaces);
-    render.surfaces.depth = depth;
-    render.surfaces.view = &job->view;
-    render.surfaces.pixel = 2 * sqrt(tc_dot(job->view.up, job->view.up)) / (double)frame->height;
-    job->surfaces = &render.surfaces;
-  }
+  if (!status && !scene->coefficients && !scene->blend)
+    status = find_looks(scene, desc, depth, normal, &render);
   TcSampler *sampler = NULL;
   if (!status && !exact)
     status = tc_sampler_create(context, desc->integrator, desc->integrator_n, &sampler);
-  if (status)
+  if (status) {
+    forget_looks(context, &render);
     return status;
+  }
   job->sampler = sampler;
   job->clip = scene->clip;
   job->clip_count = scene->clip_count;
@@ -439,6 +504,7 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
     tc_outline_draw(scene, &job->view, desc->stop, frame);
   keep_vertices(scene, job, job->precise != NULL);
   tc_sampler_destroy(sampler);
+  forget_looks(context, &render);
   if (!measured || desc->adaptive_coarse > 0)
     sum.error = NAN;
   if (!status && stats)

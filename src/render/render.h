@@ -41,18 +41,24 @@ typedef struct TcPrepared {
   pthread_mutex_t mutex;
   bool ready;
   TetcastTransferFunction *scaled; /* the transfer function in the volume's units */
+  TcSecond second;                 /* of a transfer function with rows, `scaled` being their hull */
   TcShell shell;                   /* the shell of what can be seen */
   TetcastIsosurface *isosurfaces;  /* the scene's isosurfaces, as its field is stored; NULL: there are none */
-  TcGradients gradients;           /* of the field, once a smooth surface was lit */
-  void *vertices[2];               /* for projected vertices in double and in single precision; NULL: none, or in use */
+  TcGradients gradients;           /* of the field, once they were needed for light */
+  float *open;       /* [vertices][1 + lights]: the shares of light that arrive (light.h); NULL: not needed so far */
+  void *vertices[2]; /* for projected vertices in double and in single precision; NULL: none, or in use */
 } TcPrepared;
 
 struct TetcastScene {
   TetcastContext *context;
   const TetcastVolume *volume;
   TcRows *values;                    /* NULL: no field yet */
-  TetcastTransferFunction *transfer; /* NULL: none set yet, or coefficients */
-  TcCoefficients *coefficients;      /* NULL: none set yet, or a transfer function */
+  TetcastTransferFunction *transfer; /* NULL: none set yet, or coefficients; with rows it is their hull */
+  TetcastTransferFunction **rows;    /* [row_count]: a transfer function of two dimensions; NULL: it has one */
+  double *row_at;                    /* [row_count], ascending: where the rows are, in the second quantity's unit */
+  int row_count;
+  TcRows *second;               /* the second quantity, of cells; NULL: the gradient's magnitude */
+  TcCoefficients *coefficients; /* NULL: none set yet, or a transfer function */
   TetcastBlend blend;
   TetcastIsosurface *isosurfaces; /* [isosurface_count], values ascending, in the field's unit */
   int isosurface_count;
@@ -86,6 +92,11 @@ void tc_scene_destroy(TetcastScene *scene);
 TetcastStatus tc_scene_set_field(TetcastScene *scene, const TetcastField *field);
 void tc_scene_share_field(TetcastScene *scene, const TetcastScene *other);
 TetcastStatus tc_scene_set_transfer_function(TetcastScene *scene, const TetcastTransferFunction *transfer);
+TetcastStatus tc_scene_set_transfer_rows(TetcastScene *scene, const TetcastTransferRow *rows, int count,
+                                         const TetcastField *second);
+/* Makes what kernels are to know of the scene's rows, in the volume's units; the hull is in them already. */
+TetcastStatus tc_scene_scale_rows(const TetcastScene *scene, const TcPieces *hull, TcSecond *second);
+void tc_scene_clear_rows(TetcastScene *scene);
 TetcastStatus tc_scene_set_isosurfaces(TetcastScene *scene, const TetcastIsosurface *isosurfaces, int count);
 /* Whether there are surfaces of any kind. */
 bool tc_scene_has_surfaces(const TetcastScene *scene);
@@ -94,7 +105,20 @@ TcLighting tc_lighting_of(const TetcastShadingDesc *desc);
 TetcastStatus tc_scene_scale_isosurfaces(const TetcastScene *scene, TetcastIsosurface **scaled);
 /* What kernels are to know of surfaces, once the scene is prepared. `normals` tells whether these are wanted, light or
  * not. */
-TetcastStatus tc_scene_surfaces(const TetcastScene *scene, bool normals, TcSurfaces *surfaces);
+TetcastStatus tc_scene_surfaces(const TetcastScene *scene, TetcastIsa isa, bool normals, TcSurfaces *surfaces);
+/* Whether light falls on the volume. */
+bool tc_scene_is_lit(const TetcastScene *scene);
+/* The light in the volume as this camera sees it, for tc_lights_clear(), once the scene is prepared; `width` is that of
+ * TcLights. */
+TetcastStatus tc_scene_lights(const TetcastScene *scene, TetcastIsa isa, const TcView *view, int width,
+                              TcLights *lights);
+void tc_lights_clear(TetcastContext *context, TcLights *lights);
+/* The gradients of the scene's field, and the shares of light that arrive at vertices (NULL: all of it), both made for
+ * the first who asks. */
+TetcastStatus tc_scene_gradients(const TetcastScene *scene, const TcGradients **gradients);
+TetcastStatus tc_scene_open(const TetcastScene *scene, TetcastIsa isa, const float **open, int *width);
+/* What arrives of the light is to be computed anew. */
+void tc_scene_forget_open(TetcastScene *scene);
 /* What follows from field, transfer function and isosurfaces is to be made anew. */
 void tc_scene_forget(TetcastScene *scene);
 TetcastStatus tc_scene_set_coefficients(TetcastScene *scene, const TetcastCoefficientsDesc *desc);
@@ -116,6 +140,8 @@ TetcastStatus tc_scene_preset(const TetcastScene *scene, const char *name, doubl
 /* Sets what a kernel needs to know of the scene: the shell, the field, the transfer function, coefficients or blend
  * mode. `bound` tells whether a bound on the error is wanted. */
 void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job);
+/* The same for rays of which only the opacity is wanted, through the transfer function alone. */
+void tc_job_of_opacity(const TetcastScene *scene, TcJob *job);
 /* The same for a volume without a scene, of which everything is visible, and a transfer function in its units. */
 void tc_job_of(const TetcastVolume *volume, const TcRows *values, const TcPieces *pieces, TcJob *job);
 /* The kernels in double precision for the largest instruction set that this processor has and that `most` allows. */

@@ -25,9 +25,13 @@ TetcastStatus tc_scene_create(TetcastContext *context, const TetcastVolume *volu
 static void forget(TetcastContext *context, TcPrepared *prepared) {
   tc_release(context, prepared->isosurfaces);
   prepared->isosurfaces = NULL;
+  tc_release(context, prepared->open);
+  prepared->open = NULL;
   tc_shell_clear(&prepared->shell);
   tc_transfer_destroy(prepared->scaled);
   prepared->scaled = NULL;
+  tc_release(context, (void *)prepared->second.cell);
+  tc_second_clear(context, &prepared->second);
   prepared->ready = false;
 }
 
@@ -63,6 +67,8 @@ TetcastStatus tc_scene_prepare(const TetcastScene *scene) {
   if (!prepared->ready) {
     forget(scene->context, prepared);
     status = scale_transfer(scene, &prepared->scaled);
+    if (!status && scene->row_count > 0)
+      status = tc_scene_scale_rows(scene, &prepared->scaled->pieces, &prepared->second);
     if (!status)
       status = tc_scene_scale_isosurfaces(scene, &prepared->isosurfaces);
     if (!status && (scene->slice_count > 0 || scene->boundary.opacity > 0))
@@ -74,6 +80,11 @@ TetcastStatus tc_scene_prepare(const TetcastScene *scene) {
   }
   pthread_mutex_unlock(&prepared->mutex);
   return status;
+}
+
+void tc_scene_forget_open(TetcastScene *scene) {
+  tc_release(scene->context, scene->prepared->open);
+  scene->prepared->open = NULL;
 }
 
 void *tc_scene_swap_vertices(const TetcastScene *scene, bool single, void *vertices) {
@@ -96,6 +107,7 @@ void tc_scene_destroy(TetcastScene *scene) {
   pthread_mutex_destroy(&scene->prepared->mutex);
   tc_release(scene->context, scene->prepared);
   tc_rows_release(scene->values);
+  tc_scene_clear_rows(scene);
   tc_transfer_destroy(scene->transfer);
   tc_coefficients_destroy(scene->coefficients);
   tc_release(scene->context, scene->clip);
@@ -127,6 +139,7 @@ void tc_scene_share_field(TetcastScene *scene, const TetcastScene *other) {
  * the other is NULL. */
 static void replace(TetcastScene *scene, TetcastTransferFunction *transfer, TcCoefficients *coefficients) {
   forget(scene->context, scene->prepared);
+  tc_scene_clear_rows(scene);
   tc_transfer_destroy(scene->transfer);
   tc_coefficients_destroy(scene->coefficients);
   scene->transfer = transfer;
@@ -139,6 +152,42 @@ TetcastStatus tc_scene_set_transfer_function(TetcastScene *scene, const TetcastT
   if (!status)
     replace(scene, copy, NULL);
   return status;
+}
+
+TetcastStatus tc_scene_set_transfer_rows(TetcastScene *scene, const TetcastTransferRow *rows, int count,
+                                         const TetcastField *second) {
+  TetcastContext *context = scene->context;
+  TetcastTransferFunction **copies, *hull = NULL;
+  double *at;
+  TcRows *cells = NULL;
+  if (!tc_allocate_array(context, (void **)&copies, count, sizeof(*copies), "transfer function"))
+    return TETCAST_ERROR_MEMORY;
+  memset(copies, 0, (size_t)count * sizeof *copies);
+  TetcastStatus status = tc_allocate_array(context, (void **)&at, count, sizeof *at, "transfer function")
+                             ? TETCAST_OK
+                             : TETCAST_ERROR_MEMORY;
+  for (int i = 0; !status && i < count; ++i) {
+    at[i] = rows[i].at;
+    status = tc_transfer_copy(context, rows[i].transfer_function, &copies[i]);
+  }
+  if (!status)
+    status = tc_second_hull(context, copies, count, &hull);
+  if (!status && second)
+    status = tc_rows_of_scalar(scene->volume, second, &cells);
+  if (status) {
+    for (int i = 0; i < count; ++i)
+      tc_transfer_destroy(copies[i]);
+    tc_release(context, copies);
+    tc_release(context, at);
+    tc_transfer_destroy(hull);
+    return status;
+  }
+  replace(scene, hull, NULL);
+  scene->rows = copies;
+  scene->row_at = at;
+  scene->row_count = count;
+  scene->second = cells;
+  return TETCAST_OK;
 }
 
 TetcastStatus tc_scene_set_coefficients(TetcastScene *scene, const TetcastCoefficientsDesc *desc) {
@@ -158,5 +207,6 @@ TetcastStatus tc_scene_set_clip(TetcastScene *scene, const TetcastHalfSpace *hal
   tc_release(scene->context, scene->clip);
   scene->clip = clip;
   scene->clip_count = kept;
+  tc_scene_forget_open(scene); /* what is cut off throws no shadow */
   return TETCAST_OK;
 }

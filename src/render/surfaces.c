@@ -34,16 +34,21 @@ TetcastStatus tc_scene_set_isosurfaces(TetcastScene *scene, const TetcastIsosurf
 }
 
 TcLighting tc_lighting_of(const TetcastShadingDesc *desc) {
-  TcLighting lighting = {.surfaces = desc->shade == TETCAST_SHADE_SURFACES,
+  TcLighting lighting = {.surfaces = (desc->shade & TETCAST_SHADE_SURFACES) != 0,
+                         .volume = (desc->shade & TETCAST_SHADE_VOLUME) != 0,
+                         .shadows = desc->shadows && desc->light_count > 0,
+                         .occlusion_rays = desc->occlusion_rays,
                          .smooth = desc->normals == TETCAST_NORMALS_SMOOTH,
-                         .ambient = desc->ambient,
-                         .diffuse = desc->diffuse,
-                         .specular = desc->specular,
+                         .ambient = fmin(desc->ambient, TC_LARGEST_LIGHT),
+                         .diffuse = fmin(desc->diffuse, TC_LARGEST_LIGHT),
+                         .specular = fmin(desc->specular, TC_LARGEST_LIGHT),
                          .exponent = desc->exponent,
                          .light_count = desc->light_count};
   for (int i = 0; i < desc->light_count; ++i) {
     lighting.light[i] = desc->lights[i];
     tc_normalize(lighting.light[i].direction);
+    for (int k = 0; k < 3; ++k)
+      lighting.light[i].color[k] = fmin(lighting.light[i].color[k], TC_LARGEST_LIGHT);
   }
   return lighting;
 }
@@ -76,9 +81,9 @@ static void take_largest(const TcLighting *lighting, const double color[3], TcSu
   }
 }
 
-TetcastStatus tc_scene_surfaces(const TetcastScene *scene, bool normals, TcSurfaces *surfaces) {
+TetcastStatus tc_scene_surfaces(const TetcastScene *scene, TetcastIsa isa, bool normals, TcSurfaces *surfaces) {
   const TcLighting *lighting = &scene->lighting;
-  TcPrepared *prepared = scene->prepared;
+  const TcPrepared *prepared = scene->prepared;
   *surfaces = (TcSurfaces){.count = scene->isosurface_count,
                            .surface = prepared->isosurfaces,
                            .lighting = lighting->surfaces ? lighting : NULL,
@@ -107,15 +112,11 @@ TetcastStatus tc_scene_surfaces(const TetcastScene *scene, bool normals, TcSurfa
       color[k] = fmin(scene->transfer->color[4 * i + 1 + k], TC_LARGEST_COLOR);
     take_largest(surfaces->lighting, color, surfaces);
   }
-  if (surfaces->count == 0 || !(surfaces->lighting || normals))
+  if (!surfaces->lighting && !normals)
     return TETCAST_OK;
-  if (!lighting->smooth || scene->values->association != TETCAST_POINT)
-    return TETCAST_OK;
-  TetcastStatus status = TETCAST_OK;
-  pthread_mutex_lock(&prepared->mutex);
-  if (!prepared->gradients.at)
-    status = tc_gradients_build(scene->values, &prepared->gradients);
-  pthread_mutex_unlock(&prepared->mutex);
-  surfaces->smooth = &prepared->gradients;
-  return status;
+  TetcastStatus status =
+      surfaces->lighting ? tc_scene_open(scene, isa, &surfaces->open, &surfaces->open_width) : TETCAST_OK;
+  if (status || surfaces->count == 0 || !lighting->smooth || scene->values->association != TETCAST_POINT)
+    return status;
+  return tc_scene_gradients(scene, &surfaces->smooth);
 }

@@ -20,6 +20,8 @@ typedef struct TcRender {
   const TcIsaKernels *kernels;
   TcScreen screen;
   TcSurfaces surfaces;
+  TcLights lights;
+  TcSecond second;    /* of a transfer function of one dimension, for kernels that expect two */
   TcWorking *workers; /* [threads] */
   bool bounded;       /* a bound on the error is gathered as well */
   bool counted;       /* the cells that rays cross are counted as well */

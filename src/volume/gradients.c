@@ -13,7 +13,8 @@ typedef struct Build {
   TcGradients *gradients;
 } Build;
 
-static void add_cell(Build *build, const uint32_t vertex[4]) {
+static void add_cell(void *data, const uint32_t vertex[4]) {
+  Build *build = data;
   double position[4][3], value[4], sum[3], six_volumes;
   for (int k = 0; k < 4; ++k) {
     tc_volume_vertex(build->values->volume, vertex[k], position[k]);
@@ -27,22 +28,6 @@ static void add_cell(Build *build, const uint32_t vertex[4]) {
     for (int i = 0; i < 3; ++i)
       at[i] += sum[i];
     at[3] += six_volumes;
-  }
-}
-
-/* One after the other, so that sums don't depend on the number of threads. */
-static void add_cells(Build *build) {
-  const TetcastVolume *volume = build->values->volume;
-  if (volume->traversal == TETCAST_TRAVERSAL_FACES) {
-    for (int64_t i = 0; i < volume->cell_count; ++i)
-      add_cell(build, volume->adjacency.vertices[i]);
-    return;
-  }
-  for (int64_t c = 0; c < volume->clusters.count; ++c) {
-    uint32_t vertices[TC_CLUSTER][4];
-    const int count = tc_cluster_cells(&volume->clusters, &volume->adjacency, c, vertices);
-    for (int i = 0; i < count; ++i)
-      add_cell(build, vertices[i]);
   }
 }
 
@@ -71,7 +56,7 @@ TetcastStatus tc_gradients_build(const TcRows *values, TcGradients *gradients) {
     status = TETCAST_ERROR_MEMORY;
   } else {
     memset(build.sum, 0, (size_t)count * sizeof *build.sum);
-    add_cells(&build);
+    tc_volume_each_cell(values->volume, add_cell, &build); /* so that sums do not depend on the number of threads */
     tc_parallel_for(context, count, GRAIN, take_means, &build, NULL);
   }
   tc_release(context, build.sum);

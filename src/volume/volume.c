@@ -324,6 +324,20 @@ void tc_volume_destroy(TetcastVolume *volume) {
   tc_release(context, volume);
 }
 
+void tc_volume_each_cell(const TetcastVolume *volume, void visit(void *data, const uint32_t vertex[4]), void *data) {
+  if (volume->traversal == TETCAST_TRAVERSAL_FACES) {
+    for (int64_t i = 0; i < volume->cell_count; ++i)
+      visit(data, volume->adjacency.vertices[i]);
+    return;
+  }
+  for (int64_t c = 0; c < volume->clusters.count; ++c) {
+    uint32_t vertices[TC_CLUSTER][4];
+    const int count = tc_cluster_cells(&volume->clusters, &volume->adjacency, c, vertices);
+    for (int i = 0; i < count; ++i)
+      visit(data, vertices[i]);
+  }
+}
+
 void tc_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info) {
   *info = volume->info;
   const size_t position = 3 * (volume->positions_are_double ? sizeof(double) : sizeof(float));

@@ -63,6 +63,9 @@ TetcastStatus tc_volume_create(TetcastContext *context, const TetcastMesh *mesh,
 void tc_volume_destroy(TetcastVolume *volume);
 void tc_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info);
 
+/* Visits all cells, one after the other, with their vertices in ascending order. */
+void tc_volume_each_cell(const TetcastVolume *volume, void visit(void *data, const uint32_t vertex[4]), void *data);
+
 /* Computes the bounds of face or cell i of a TcShell, for Embree. */
 void tc_shell_bounds(const void *shell, uint32_t i, double low[3], double high[3]);
 

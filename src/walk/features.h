@@ -12,6 +12,9 @@ enum {
   TC_BOUND = 1 << 4,    /* a bound on the error is gathered (tolerance.h) */
   TC_WEIGHTS = 1 << 5,  /* barycentric weights are computed, for values that the gatherer interpolates */
   TC_SURFACES = 1 << 6, /* rays meet surfaces between the parts of their segments */
+  TC_LIT = 1 << 7,      /* light falls on the volume: a colour times a factor that is linear in a cell */
+  TC_TINTED = 1 << 8,   /* this factor differs between red, green and blue */
+  TC_SECOND = 1 << 9,   /* the transfer function depends on a second quantity, too, which is constant in a cell */
   TC_EVERY_FEATURE = TC_COLORED | TC_SCALED | TC_BOUND,
 
   /* The scalar's association: a kernel has one of these at most. With none of them, the scalar is one of points. */

@@ -254,7 +254,7 @@ typedef struct TcTilt {
 typedef struct TcCrossing {
   TcVec z;              /* the depth */
   TcVec s;              /* the scalar, if it is one of points; it is kept within the range of the vertices' scalars */
-  TcVec barycentric[3]; /* with TC_WEIGHTS, TC_CORNERS or TC_SURFACES: the weights of the vertices */
+  TcVec barycentric[3]; /* with TC_WEIGHTS, TC_CORNERS, TC_SURFACES, TC_LIT: the weights of the vertices */
   TcVec reach;          /* with TC_BOUND: the largest coordinate of the face's vertices beside the ray */
   TcTilt tilt;          /* with TC_BOUND */
 } TcCrossing;
@@ -302,7 +302,7 @@ TC_INLINE void tc_cross_face(const unsigned on, const TcGround *ground, const Tc
   }
   const TcVec inverse = 1 / (w[0] + w[1] + w[2]);
   c->z = n * inverse * rays->scale;
-  if (on & (TC_WEIGHTS | TC_CORNERS | TC_SURFACES)) {
+  if (on & (TC_WEIGHTS | TC_CORNERS | TC_SURFACES | TC_LIT)) {
     for (int k = 0; k < 3; ++k)
       c->barycentric[k] = w[k] * inverse;
   }

@@ -16,6 +16,8 @@ typedef struct TcSurfaces {
   const TetcastIsosurface *surface; /* [count], values ascending, as the field is stored */
   const TcGradients *smooth;        /* NULL: normals are those of cells */
   const TcLighting *lighting;       /* NULL: no light falls on them */
+  const float *open;                /* [vertices][open_width], as tc_light_reflection() takes them; NULL: all is open */
+  int open_width;
   int slice_count;
   TcHalfSpace slice[TETCAST_MAX_SLICES];
   double slice_opacity[TETCAST_MAX_SLICES];

@@ -230,12 +230,41 @@ static void render_samples(const Stage *stage, int kernel, double *sums) {
   free(samples);
 }
 
+/* For kernels that know light in the volume or a second dimension: light that changes nothing, at each vertex, and two
+ * rows that are the transfer function itself. */
+typedef struct Nothing {
+  TcLights lights;
+  TcSecond second;
+  double *places;
+} Nothing;
+
+static void nothing_begin(const Stage *stage, Nothing *nothing) {
+  const TetcastVolume *volume = stage->job.shell->volume;
+  *nothing = (Nothing){.lights = {.width = TC_LIGHT_GRAY, .factor = 1}};
+  nothing->lights.at = calloc((size_t)volume->vertex_count, sizeof *nothing->lights.at);
+  for (int64_t i = 0; i < volume->vertex_count; ++i)
+    nothing->lights.at[i][0] = 1;
+  if (!stage->job.pieces)
+    return;
+  TetcastTransferFunction only = {.pieces = *stage->job.pieces}, *rows[] = {&only};
+  assert_int_equal(tc_second_build(stage->context, rows, 1, stage->job.pieces, &nothing->second), TETCAST_OK);
+  nothing->second.cell = nothing->places = calloc((size_t)volume->cell_count + 1, sizeof *nothing->places);
+}
+
+static void nothing_end(const Stage *stage, Nothing *nothing) {
+  tc_second_clear(stage->context, &nothing->second);
+  free(nothing->lights.at);
+  free(nothing->places);
+}
+
 /* Each kernel's picture, by each row that serves, against the plain one; `rows` counts what was tested. */
 static void check(Stage *stage, double color, double limit, int rows[TC_KERNELS]) {
   TcJob *job = &stage->job;
   const int chosen = job->kernel;
   double *sums = malloc((size_t)(PIXELS * job->sums) * sizeof *sums);
   expect(stage);
+  Nothing nothing;
+  nothing_begin(stage, &nothing);
   for (int row = 0; row < TC_KERNELS; ++row) {
     job->kernel = chosen;
     if (!row_serves(&kernel_rows[row], job))
@@ -243,6 +272,11 @@ static void check(Stage *stage, double color, double limit, int rows[TC_KERNELS]
     static const TcSurfaces none = {.count = 0};
     job->kernel = row;
     job->surfaces = kernel_rows[row].features & TC_SURFACES ? &none : NULL;
+    TcLights lights = nothing.lights;
+    if (kernel_rows[row].features & TC_TINTED) /* no light at all is the same there */
+      lights = (TcLights){.width = TC_LIGHT_TINTED, .factor = 1};
+    job->lights = &lights;
+    job->second = &nothing.second;
     for (int kernel = 0; kernel < ALL_KERNELS; ++kernel) {
       if (!kernel_runs(kernel, job->shell->volume) || (kernel_rows[row].one_lane && kernel > 0))
         continue;
@@ -262,6 +296,9 @@ static void check(Stage *stage, double color, double limit, int rows[TC_KERNELS]
       ++rows[row];
     }
   }
+  nothing_end(stage, &nothing);
+  job->lights = NULL;
+  job->second = NULL;
   job->kernel = chosen;
   free(sums);
 }

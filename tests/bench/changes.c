@@ -123,7 +123,10 @@ typedef struct Feature {
   Times times;
   TetcastRenderStats stats;
   TetcastBlend blend;
-  int planes;      /* 1: clipped to `oblique` */
+  int planes; /* 1: clipped to `oblique` */
+  TetcastShade shade;
+  bool shadows;
+  int rows;        /* 0: a transfer function of one dimension; else of so many rows */
   int edges;       /* 1: an outline, and the boundary's triangles; 2: the boundary without its triangles */
   bool part;       /* only the middle of rays counts */
   double adaptive; /* rays are cast where pixels differ by so much, from every fourth pixel on; 0: everywhere */
@@ -138,6 +141,34 @@ static void set_isosurfaces(Tet *tet, int count) {
         .value = (i + 1.0) / (surfaces + 1), .color = {0.9, 0.5, 0.2}, .opacity = count < 0 ? 0.5 : 1};
   }
   must(tetcast_scene_set_isosurfaces(tet->scene, list, surfaces) == TETCAST_OK, "isosurfaces");
+}
+
+/* A light of its own if there are shadows, else one at the eye. */
+static void set_light(Tet *tet, const Feature *feature) {
+  static const TetcastLight light = {{1, 2, 1.5}, {1, 1, 1}};
+  TetcastShadingDesc desc = tetcast_shading_desc_default();
+  desc.shade = feature->shade ? feature->shade : TETCAST_SHADE_SURFACES;
+  desc.lights = &light;
+  desc.light_count = desc.shadows = feature->shadows;
+  must(tetcast_scene_set_shading(tet->scene, &desc) == TETCAST_OK, "set shading");
+}
+
+/* Rows at values of the gradient: the same colours and a little more extinction in each. */
+static void set_rows(Tet *tet, const Feature *feature) {
+  TetcastTransferRow rows[8];
+  TetcastTransferFunction *made[8] = {NULL};
+  for (int i = 0; i < feature->rows; i++) {
+    Transfer transfer = *feature->transfer;
+    for (int j = 0; j < transfer.opacity_count; j++)
+      transfer.opacity[j][1] *= 0.5 + 0.5 * i / feature->rows;
+    TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
+    transfer_fill(&desc, &transfer);
+    must(tetcast_transfer_function_create(tet->context, &desc, &made[i]) == TETCAST_OK, "row");
+    rows[i] = (TetcastTransferRow){.at = 2 * i, .transfer_function = made[i]};
+  }
+  must(tetcast_scene_set_transfer_rows(tet->scene, rows, feature->rows, NULL) == TETCAST_OK, "set rows");
+  for (int i = 0; i < feature->rows; i++)
+    tetcast_transfer_function_destroy(&made[i]);
 }
 
 static void set_lines(Tet *tet, int edges) {
@@ -183,7 +214,11 @@ static void measure_feature(const Job *job, Tet *tet, Feature *feature, TetcastF
   const TetcastArray from = {ends, TETCAST_TYPE_FLOAT64, pixels, 0},
                      to = {ends + pixels, TETCAST_TYPE_FLOAT64, pixels, 0};
   must(tetcast_scene_set_field(tet->scene, fields[feature->values]) == TETCAST_OK, "set field");
-  tet_transfer(tet, feature->transfer);
+  if (feature->rows > 0)
+    set_rows(tet, feature);
+  else
+    tet_transfer(tet, feature->transfer);
+  set_light(tet, feature);
   set_isosurfaces(tet, feature->isosurfaces);
   must(tetcast_scene_set_blend(tet->scene, feature->blend) == TETCAST_OK, "set blend");
   must(tetcast_scene_set_clip(tet->scene, &oblique, feature->planes) == TETCAST_OK, "set clip");
@@ -229,6 +264,15 @@ void job_features(const Job *job) {
       {.name = "both with knots and a clip", .transfer = &transfer_soft, .planes = 1},
       {.name = "3 opaque lit isosurfaces alone", .transfer = &clear, .isosurfaces = 3},
       {.name = "3 lit isosurfaces in the volume", .transfer = &transfer_linear, .isosurfaces = -3},
+      {.name = "one piece and two colours", .transfer = &transfer_blend},
+      {.name = "light in the volume", .transfer = &transfer_blend, .shade = TETCAST_SHADE_ALL},
+      {.name = "light in the volume and knots", .transfer = &transfer_soft, .shade = TETCAST_SHADE_ALL},
+      {.name = "light in the volume with shadows",
+       .transfer = &transfer_blend,
+       .shade = TETCAST_SHADE_ALL,
+       .shadows = true},
+      {.name = "two dimensions of 4 rows", .transfer = &transfer_blend, .rows = 4},
+      {.name = "two dimensions of 4 rows with knots", .transfer = &transfer_soft, .rows = 4},
       {.name = "adaptive to 0.01 from 4th pixels on", .transfer = &transfer_linear, .adaptive = 0.01},
       {.name = "a part of each ray", .transfer = &transfer_linear, .part = true},
       {.name = "boundary", .transfer = &clear, .edges = 2},

@@ -40,6 +40,20 @@ while read -r row; do
   checks=$((checks + 1))
   grep -qxF "$format  $extensions" <<<"$manual" || fail "no row '| $format | $extensions |' in the manual"
 done <<<"$output"
+# The cube has s = x + 2 y + 3 z: half of it is below 3, and by symmetry as much is below 3 - d as above 3 + d.
+vtu even.vtu "$five_tetrahedra" 10
+accept info --statistics even.vtu
+contains 'of the volume  1 %: 0.7114 .* 50 %: 3 '
+"$tetcast" info --statistics --json even.vtu >even.json
+python3 - even.json <<'END' || fail 'quantiles of the linear array'
+import json, sys
+with open(sys.argv[1]) as file:
+    array = [a for a in json.load(file)['arrays'] if a['name'] == 's'][0]
+pairs = array['quantiles']
+assert [p[0] for p in pairs] == [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99]
+assert all(abs(pairs[i][1] + pairs[-1 - i][1] - 6) < 1e-12 for i in range(7))
+assert abs((pairs[0][1]) ** 3 / 36 - 0.01) < 1e-12  # near the corner the volume is v^3 / (6 * 1 * 2 * 3)
+END
 refuse 2 'takes no input' info --formats cube.vtu
 
 # Steps, blocks, and points to be merged.

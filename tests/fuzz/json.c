@@ -36,13 +36,17 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   RenderOptions options = render_options_default(COMMAND_RENDER);
   options.scene = cli_duplicate(path);
   if (scene_file_read(&options) && options.transfer_object) {
-    TetcastTransferFunction *transfer_function = transfer_file_load(context, &options);
+    TransferRows rows = {.count = 0};
+    TetcastTransferFunction *transfer_function = transfer_file_load(context, &options, &rows);
+    transfer_file_release(&rows);
     tetcast_transfer_function_destroy(&transfer_function);
   }
   render_options_release(&options);
   options = render_options_default(COMMAND_RENDER);
   options.transfer = cli_duplicate(path);
-  TetcastTransferFunction *transfer_function = transfer_file_load(context, &options);
+  TransferRows rows = {.count = 0};
+  TetcastTransferFunction *transfer_function = transfer_file_load(context, &options, &rows);
+  transfer_file_release(&rows);
   tetcast_transfer_function_destroy(&transfer_function);
   render_options_release(&options);
   return 0;

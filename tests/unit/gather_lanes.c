@@ -12,7 +12,7 @@ enum { FEATURES = TC_COLORED | TC_SCALED };
 void NAME(TC_LANES_NAME)(const TcPieces *pieces, const double *length, const double *s0, const double *s1,
                          int64_t count, double rgba[4]) {
   static TcEmission e;
-  const TcGatherJob job = {.sums = 5, .pieces = pieces, .tolerance = tc_tolerance_begin(pieces, 0)};
+  const TcGatherJob job = {.sums = 5, .pieces = pieces, .tolerance = tc_tolerance_begin(pieces, 0, 0)};
   tc_pieces_load(pieces, tc_set_int(0), &e.piece);
   tc_emission_begin(&job, &e);
   for (int64_t i = 0; i < count; ++i) {
