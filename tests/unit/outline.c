@@ -82,7 +82,7 @@ static bool through_box(const double a[3], const double b[3]) {
 static Near *find_near(const TetcastCamera *camera) {
   Near *near = malloc(sizeof *near * 12 * PIXELS);
   for (int i = 0; i < 12 * PIXELS; ++i)
-    near[i].pixels = INFINITY;
+    near[i] = (Near){.pixels = INFINITY};
   for (int edge = 0; edge < 12; ++edge) {
     for (int i = 0; i <= POINTS; ++i) {
       const int k = edge / 4;
