@@ -153,7 +153,7 @@ typedef struct Kind {
   TetcastOwnership ownership;
   TetcastIntegrator integrator;
   double tolerance;
-  bool preset, narrow, coefficients, health, replaced;
+  bool preset, narrow, coefficients, health, replaced, statistics, lit, rows;
 } Kind;
 
 static void narrow_transfer(Run *run, TetcastTransferFunction **transfer, bool narrow) {
@@ -175,6 +175,41 @@ static void set_coefficients(Run *run, TetcastScene *scene, const TetcastField *
   CALL(run, tetcast_scene_set_coefficients(scene, &desc));
 }
 
+/* Of the field on its mesh. */
+static void find_statistics(Run *run, const TetcastMesh *mesh, const TetcastField *field) {
+  TetcastStatisticsDesc desc = tetcast_statistics_desc_default();
+  desc.gradient_bins = 4;
+  TetcastStatistics *statistics = (TetcastStatistics *)&desc;
+  static const double shares[] = {0.25, 0.5};
+  double values[2];
+  MAKE(run, statistics, tetcast_statistics_create(run->fixture.context, mesh, field, &desc, &statistics));
+  CALL(run, tetcast_statistics_quantiles(run->fixture.context, mesh, field, shares, 2, values));
+  note(run, statistics->volume, (size_t)statistics->bins * sizeof(double));
+  note(run, values, sizeof values);
+  tetcast_statistics_destroy(run->fixture.context, &statistics);
+}
+
+/* Light in the volume, with shadows; of a colour where there are rows. */
+static void set_light(Run *run, TetcastScene *scene, const Kind *kind) {
+  const TetcastLight light = {.direction = {1, 2, 3}, .color = {1, 1, kind->rows ? 0.5 : 1}};
+  TetcastShadingDesc desc = tetcast_shading_desc_default();
+  desc.shade = TETCAST_SHADE_ALL;
+  desc.lights = &light;
+  desc.light_count = desc.shadows = 1;
+  desc.occlusion_rays = 3;
+  CALL(run, tetcast_scene_set_shading(scene, &desc));
+}
+
+/* A transfer function, or rows with it at both. */
+static void set_transfer(Run *run, TetcastScene *scene, const Kind *kind, const TetcastTransferFunction *transfer) {
+  const TetcastTransferRow rows[2] = {{.at = 0.5, .transfer_function = transfer},
+                                      {.at = 2, .transfer_function = transfer}};
+  if (kind->rows)
+    CALL(run, tetcast_scene_set_transfer_rows(scene, rows, 2, NULL));
+  else
+    CALL(run, tetcast_scene_set_transfer_function(scene, transfer));
+}
+
 static void render(Run *run, const Kind *kind, TetcastScene *scene) {
   TetcastContext *context = run->fixture.context;
   TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
@@ -183,7 +218,7 @@ static void render(Run *run, const Kind *kind, TetcastScene *scene) {
   frame_desc.groups = 3;
   if (kind->coefficients)
     frame_desc.channels = TETCAST_CHANNEL_OPTICAL_DEPTH | TETCAST_CHANNEL_RADIANCE;
-  else if (kind->integrator == TETCAST_INTEGRATOR_EXACT)
+  else if (kind->integrator == TETCAST_INTEGRATOR_EXACT && !kind->lit && !kind->rows)
     frame_desc.channels = TETCAST_CHANNEL_ERROR;
   TetcastFrame *frame = (TetcastFrame *)&frame_desc;
   MAKE(run, frame, tetcast_frame_create(context, &frame_desc, &frame));
@@ -232,6 +267,8 @@ static void whole_picture(Run *run, const Kind *kind) {
   field_desc.ownership = kind->ownership;
   TetcastField *field = (TetcastField *)&cube;
   MAKE(run, field, tetcast_field_create(context, &field_desc, &field));
+  if (kind->statistics)
+    find_statistics(run, mesh, field);
   TetcastScene *scene = (TetcastScene *)&cube;
   MAKE(run, scene, tetcast_scene_create(context, volume, &scene));
   CALL(run, tetcast_scene_set_field(scene, field));
@@ -243,14 +280,16 @@ static void whole_picture(Run *run, const Kind *kind) {
   if (kind->coefficients)
     set_coefficients(run, scene, field);
   else
-    CALL(run, tetcast_scene_set_transfer_function(scene, transfer));
+    set_transfer(run, scene, kind, transfer);
+  if (kind->lit)
+    set_light(run, scene, kind);
   render(run, kind, scene);
   if (kind->replaced) { /* the scene is prepared anew */
     CALL(run, tetcast_scene_set_field(scene, field));
     if (kind->coefficients)
       set_coefficients(run, scene, field);
     else
-      CALL(run, tetcast_scene_set_transfer_function(scene, transfer));
+      set_transfer(run, scene, kind, transfer);
     render(run, kind, scene);
   }
   tetcast_scene_destroy(&scene);
@@ -283,6 +322,15 @@ static void coefficients_of_cells(Run *run) {
 static void single_precision(Run *run) {
   whole_picture(run, &(Kind){.tolerance = 0.05});
 }
+static void lit(Run *run) {
+  whole_picture(run, &(Kind){.lit = true, .replaced = true, .statistics = true});
+}
+static void lit_rows(Run *run) {
+  whole_picture(run, &(Kind){.lit = true, .rows = true, .replaced = true});
+}
+static void rows_of_faces(Run *run) {
+  whole_picture(run, &(Kind){.rows = true, .traversal = TETCAST_TRAVERSAL_FACES});
+}
 static void table(Run *run) {
   whole_picture(run, &(Kind){.integrator = TETCAST_INTEGRATOR_TABLE});
 }
@@ -306,6 +354,9 @@ static const struct {
     {"coefficients", coefficients},
     {"coefficients of cells", coefficients_of_cells},
     {"single precision", single_precision},
+    {"light in the volume", lit},
+    {"light and rows", lit_rows},
+    {"rows of faces", rows_of_faces},
     {"table", table},
     {"gauss", gauss},
 };
