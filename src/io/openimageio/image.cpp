@@ -202,6 +202,9 @@ TypeDesc requested_type(TetcastPixelType type, const Format &format, const Pixel
 std::string unfit(const char *format, TypeDesc type, const Pixels &pixels, bool opaque) {
   if (!std::strcmp(format, "webp") && !opaque) // OpenImageIO's writer divides them by alpha, which we have done
     return "the format takes colours over an opaque background alone; .png and .tif hold alpha";
+  // OpenImageIO 2.5 makes a .pfm of these, whatever the name, and upside down.
+  if (!std::strcmp(format, "pnm") && is_float(type))
+    return "the format cannot hold pixels of type half, float or double; .exr and .tif do";
   const bool radiance = !std::strcmp(format, "hdr");
   if (pixels.colors() == 0 || (type != TypeDesc::HALF && !radiance))
     return "";
