@@ -519,8 +519,7 @@ static void every_format_holds_the_picture_or_is_refused(void **) {
         compare(picture, pixels, background, lossy ? 0.05 : rgbe ? 0x1p-7 : pnm ? 2e-5 : 1e-7);
         if (extension == "bmp" || extension == "tga" || pnm) {
           Picture raw = picture;
-          raw.values = raw_pixels(path, width, height, picture.spec.nchannels,
-                                  picture.spec.format == TypeDesc::UINT16);
+          raw.values = raw_pixels(path, width, height, picture.spec.nchannels, picture.spec.format == TypeDesc::UINT16);
           compare(raw, pixels, background, 1e-7);
         }
       }
