@@ -23,6 +23,8 @@ extern "C" {
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 
+#include "fixture.hpp"
+
 #include <tetcast/image.h>
 #include <tetcast/tetcast.h>
 
@@ -32,30 +34,6 @@ using OIIO::ImageBuf;
 using OIIO::ImageInput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
-
-static TetcastContext *context;
-static std::string last_error;
-static fs::path folder;
-
-static void remember(void *, TetcastSeverity, const char *text) {
-  last_error = text;
-}
-
-static int setup(void **) {
-  TetcastContextDesc desc = tetcast_context_desc_default();
-  desc.message = remember;
-  char name[] = "/tmp/tetcast-deep-XXXXXX";
-  if (tetcast_context_create(&desc, &context) != TETCAST_OK || !mkdtemp(name))
-    return 1;
-  folder = name;
-  return 0;
-}
-
-static int teardown(void **) {
-  tetcast_context_destroy(&context);
-  fs::remove_all(folder);
-  return 0;
-}
 
 constexpr int width = 13, height = 37, pixels = width * height, layers = 5;
 

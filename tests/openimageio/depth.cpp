@@ -20,6 +20,8 @@ extern "C" {
 #include <OpenImageIO/deepdata.h>
 #include <OpenImageIO/imageio.h>
 
+#include "fixture.hpp"
+
 #include <tetcast/image.h>
 #include <tetcast/tetcast.h>
 
@@ -29,30 +31,6 @@ using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
 static constexpr int width = 7, height = 5, pixels = width * height;
-static TetcastContext *context;
-static std::string last_error, last_warning;
-static fs::path folder;
-
-static void remember(void *, TetcastSeverity severity, const char *text) {
-  (severity == TETCAST_SEVERITY_ERROR ? last_error : last_warning) = text;
-}
-
-static int setup(void **) {
-  TetcastContextDesc desc = tetcast_context_desc_default();
-  desc.message = remember;
-  char name[] = "/tmp/tetcast-depth-XXXXXX";
-  if (tetcast_context_create(&desc, &context) != TETCAST_OK || !mkdtemp(name))
-    return 1;
-  folder = name;
-  return 0;
-}
-
-static int teardown(void **) {
-  tetcast_context_destroy(&context);
-  fs::remove_all(folder);
-  return 0;
-}
-
 // What channel c has at a pixel: numbers that single precision holds.
 static double number(int c, int pixel) {
   if (pixel == 3)

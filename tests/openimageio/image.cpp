@@ -28,37 +28,13 @@ extern "C" {
 
 #include <OpenImageIO/imageio.h>
 
+#include "fixture.hpp"
+
 #include <tetcast/image.h>
 #include <tetcast/tetcast.h>
 
 namespace fs = std::filesystem;
 using OIIO::TypeDesc;
-
-static TetcastContext *context;
-static std::string last_error, last_warning;
-static fs::path folder;
-
-static void remember(void *, TetcastSeverity severity, const char *text) {
-  (severity == TETCAST_SEVERITY_ERROR ? last_error : last_warning) = text;
-}
-
-static int setup(void **) {
-  TetcastContextDesc desc = tetcast_context_desc_default();
-  desc.message = remember;
-  if (tetcast_context_create(&desc, &context) != TETCAST_OK)
-    return 1;
-  char name[] = "/tmp/tetcast-image-XXXXXX";
-  if (!mkdtemp(name))
-    return 1;
-  folder = name;
-  return 0;
-}
-
-static int teardown(void **) {
-  tetcast_context_destroy(&context);
-  fs::remove_all(folder);
-  return 0;
-}
 
 // Counts what is printed on stderr, by any library, while it lives.
 class Listener {
