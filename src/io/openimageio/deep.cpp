@@ -120,12 +120,7 @@ void write(TetcastContext *context, const char *path, const TetcastDeep &deep, T
     done = write_rows(*output, deep, spec);
     done = output->close() && done;
   }
-  std::string reason = output->geterror();
-  std::replace(reason.begin(), reason.end(), '\n', ' ');
-  if (proxy->error_number() != 0)
-    fail(context, TETCAST_ERROR_IO, path, error_text(proxy->error_number()));
-  if (!done)
-    fail(context, TETCAST_ERROR_IO, path, reason.empty() ? "OpenImageIO failed without saying why" : reason);
+  tetcast::check_written(context, path, output->geterror(), proxy->error_number(), done);
   output.reset();
   if (const int error = file.publish())
     fail(context, TETCAST_ERROR_IO, path, error_text(error));

@@ -3,6 +3,7 @@
 #ifndef TETCAST_OPENIMAGEIO_FAILURE_HPP
 #define TETCAST_OPENIMAGEIO_FAILURE_HPP
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <new>
@@ -33,6 +34,15 @@ inline std::string error_text(int error) {
   default:
     return std::strerror(error);
   }
+}
+
+// After the last byte: fails with the system's error, or with what OpenImageIO said, unless all was written.
+inline void check_written(TetcastContext *context, const char *path, std::string reason, int error, bool done) {
+  std::replace(reason.begin(), reason.end(), '\n', ' ');
+  if (error != 0)
+    fail(context, TETCAST_ERROR_IO, path, error_text(error));
+  if (!done)
+    fail(context, TETCAST_ERROR_IO, path, reason.empty() ? "OpenImageIO failed without saying why" : reason);
 }
 
 // Writes, and turns every exception into a status and a message.
