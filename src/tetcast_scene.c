@@ -122,6 +122,7 @@ TetcastStatus tetcast_scene_set_blend(TetcastScene *scene, TetcastBlend blend) {
   if ((unsigned)blend > TETCAST_BLEND_ADDITIVE)
     return ARGUMENT(scene->context, "unknown blend mode %d", (int)blend);
   scene->blend = blend;
+  tc_scene_forget(scene); /* what is visible depends on it */
   return TETCAST_OK;
 }
 

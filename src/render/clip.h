@@ -5,8 +5,8 @@
 
 #include <tetcast/clip.h>
 
+#include "volume/clip.h"
 #include "volume/volume.h"
-#include "walk/clip.h"
 
 /* A plane or half-space in the volume's units. */
 TcHalfSpace tc_half_space_scale(const TetcastVolume *volume, const TetcastHalfSpace *source);

@@ -7,8 +7,8 @@
 
 #include "optics/second.h"
 #include "optics/tolerance.h"
+#include "volume/clip.h"
 #include "volume/coefficients.h"
-#include "walk/clip.h"
 #include "walk/features.h"
 #include "walk/hits.h"
 #include "walk/lights.h"

@@ -91,14 +91,14 @@ static void see_through(const TcRows *values, const TcPieces *pieces, unsigned m
 void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job) {
   const unsigned measured = bound ? TC_BOUND : 0;
   if (scene->coefficients) {
-    job->shell = &scene->volume->shell;
+    job->shell = &scene->prepared->shell;
     job->coefficients = scene->coefficients;
     job->sums = 3 * scene->coefficients->groups + (bound ? 3 : 2);
     job->kernel = choose_row("groups", TC_WEIGHTS | TC_CELLS | measured, &job->one_lane);
     return;
   }
   if (scene->blend) { /* these look at all of the volume, as nothing is hidden */
-    job->shell = &scene->volume->shell;
+    job->shell = &scene->prepared->shell;
     job->values = scene->values;
     job->blend = scene->blend;
     job->sums = 2;
@@ -255,8 +255,7 @@ static bool project_some(void *data, int64_t begin, int64_t end, int worker) {
  * a cube, of which each ray crosses half as many cells as ∛cell_count. */
 static bool worth_projecting(const TetcastScene *scene, int64_t rays, const TcJob *job) {
   const double cells = (double)scene->volume->cell_count, crossings = 0.5 * (double)rays * cbrt(cells);
-  const double share =
-      job->shell->visible ? (double)job->shell->visible_count / (double)scene->volume->clusters.count : 1;
+  const double share = job->shell->visible ? (double)job->shell->visible_cells / cells : 1;
   return share * crossings > 3 * (double)scene->volume->vertex_count;
 }
 
@@ -468,7 +467,7 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   tc_sample_grid(desc->samples, &job->samples_x, &job->samples_y);
   TetcastStatus status =
       tc_view_create(context, camera, scene->volume, (double)frame->width / (double)frame->height, &job->view);
-  if (!status && !scene->coefficients && !scene->blend)
+  if (!status)
     status = tc_scene_prepare(scene);
   if (!status && !scene->coefficients && !scene->blend)
     status = find_looks(scene, desc, depth, normal, &render);

@@ -58,6 +58,28 @@ static TetcastStatus scale_transfer(const TetcastScene *scene, TetcastTransferFu
   return status;
 }
 
+/* What is made of the transfer function and of surfaces, in the volume's units. */
+static TetcastStatus prepare_optics(const TetcastScene *scene) {
+  TcPrepared *prepared = scene->prepared;
+  TetcastStatus status = scale_transfer(scene, &prepared->scaled);
+  if (!status && scene->row_count > 0)
+    status = tc_scene_scale_rows(scene, &prepared->scaled->pieces, &prepared->second);
+  return status ? status : tc_scene_scale_isosurfaces(scene, &prepared->isosurfaces);
+}
+
+/* A blend mode and coefficients look at all of the volume, a slice may be anywhere, and the boundary is all of it. */
+static TetcastStatus prepare_shell(const TetcastScene *scene) {
+  TcPrepared *prepared = scene->prepared;
+  TcShellOf of = {.volume = scene->volume, .clip = scene->clip, .clip_count = scene->clip_count};
+  if (prepared->scaled && scene->slice_count == 0 && !(scene->boundary.opacity > 0)) {
+    of.rows = scene->values;
+    of.pieces = &prepared->scaled->pieces;
+    of.isosurfaces = prepared->isosurfaces;
+    of.isosurface_count = scene->isosurface_count;
+  }
+  return tc_shell_build(&of, &prepared->shell);
+}
+
 /* Several threads may call this for one scene at the same time: the first does the work, the others wait for it. What
  * is freed here is not in use, as neither field nor transfer function may change while the scene renders. */
 TetcastStatus tc_scene_prepare(const TetcastScene *scene) {
@@ -66,18 +88,12 @@ TetcastStatus tc_scene_prepare(const TetcastScene *scene) {
   pthread_mutex_lock(&prepared->mutex);
   if (!prepared->ready) {
     forget(scene->context, prepared);
-    status = scale_transfer(scene, &prepared->scaled);
-    if (!status && scene->row_count > 0)
-      status = tc_scene_scale_rows(scene, &prepared->scaled->pieces, &prepared->second);
-    if (!status)
-      status = tc_scene_scale_isosurfaces(scene, &prepared->isosurfaces);
-    if (!status && (scene->slice_count > 0 || scene->boundary.opacity > 0))
-      prepared->shell = scene->volume->shell; /* a slice may be anywhere, and the boundary is all of it */
-    else if (!status)
-      status = tc_shell_build(scene->values, &prepared->scaled->pieces, prepared->isosurfaces, scene->isosurface_count,
-                              &prepared->shell);
+    if (!scene->coefficients && !scene->blend)
+      status = prepare_optics(scene);
     prepared->ready = !status;
   }
+  if (!status && !prepared->shell.volume)
+    status = prepare_shell(scene);
   pthread_mutex_unlock(&prepared->mutex);
   return status;
 }
@@ -207,6 +223,7 @@ TetcastStatus tc_scene_set_clip(TetcastScene *scene, const TetcastHalfSpace *hal
   tc_release(scene->context, scene->clip);
   scene->clip = clip;
   scene->clip_count = kept;
+  tc_shell_clear(&scene->prepared->shell);
   tc_scene_forget_open(scene); /* what is cut off throws no shadow */
   return TETCAST_OK;
 }

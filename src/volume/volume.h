@@ -17,8 +17,8 @@ typedef struct TcShell {
   const TcShellFace *faces; /* [count]; NULL with TETCAST_TRAVERSAL_FACES, where Embree holds the cells */
   int64_t count;            /* the number of faces, or of cells */
   TcEmbree *embree;         /* over the faces or cells; NULL if there are none */
-  uint8_t *visible;         /* [clusters]: not 0 if it is visible; NULL if all are */
-  int64_t visible_count;    /* how many clusters are visible, if not all */
+  uint64_t *visible;        /* [clusters, and room for one more]: a bit for each visible cell; NULL if all are */
+  int64_t visible_cells;    /* how many cells are visible, if not all */
   void *memory;             /* the memory of `faces`, if the shell owns it */
 } TcShell;
 
@@ -65,6 +65,11 @@ void tc_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info);
 
 /* Visits all cells, one after the other, with their vertices in ascending order. */
 void tc_volume_each_cell(const TetcastVolume *volume, void visit(void *data, const uint32_t vertex[4]), void *data);
+
+/* Whether a cell is visible, in a shell that leaves some out. The cell after the last one, where rays rest, is. */
+static inline bool tc_shell_shows(const TcShell *shell, uint32_t cell) {
+  return shell->visible[cell >> TC_CLUSTER_BITS] >> (cell & (TC_CLUSTER - 1)) & 1;
+}
 
 /* Computes the bounds of face or cell i of a TcShell, for Embree. */
 void tc_shell_bounds(const void *shell, uint32_t i, double low[3], double high[3]);

@@ -28,28 +28,46 @@
 
 #include "walk/place.h"
 
-/* Clips ray l to a half-space. `most`: how far an end may be off where the ray is perpendicular to the plane. False:
- * none of the ray counts, whatever was rounded. */
-static bool tc_clip_lane(const TcHalfSpace *half_space, double radius, double most, TcPlaced *placed, int l) {
-  double value = half_space->at_center, slope = 0;
-  for (int k = 0; k < 3; ++k) {
-    value += half_space->normal[k] * TC_AT(placed->from_center[k], l);
-    slope += half_space->normal[k] * TC_AT(placed->lines.direction[k], l);
-  }
-  const double steepness = fabs(slope), reach = steepness * radius, slack = most * half_space->length;
+/* Clips ray l to a half-space that has this value at the ray's point and this slope along the ray. `slack`: |n| times
+ * how far an end may be off where the ray is perpendicular to the plane. False: none of the ray counts, whatever was
+ * rounded. */
+static bool tc_clip_lane(double value, double slope, double radius, double slack, TcPlaced *placed, int l) {
+  const double steepness = fabs(slope), reach = steepness * radius;
   if (value - reach > slack)
     return true; /* all that the ray has in the sphere lies inside */
   if (value + reach < -slack)
     return false;
   const double at = -value / slope, doubt = slack / steepness;
   if (slope > 0)
-    TC_AT(placed->begin, l) = fmax(TC_AT(placed->begin, l), at);
+    TC_AT(placed->begin, l) = TC_AT(placed->begin, l) > at ? TC_AT(placed->begin, l) : at;
   else if (slope < 0)
-    TC_AT(placed->end, l) = fmin(TC_AT(placed->end, l), at);
+    TC_AT(placed->end, l) = TC_AT(placed->end, l) < at ? TC_AT(placed->end, l) : at;
   else if (value < 0) /* parallel to the plane, and beyond it; in the plane it is kept */
     TC_AT(placed->end, l) = -INFINITY;
   TC_AT(placed->doubt, l) += doubt < 2 * radius ? doubt : 2 * radius;
   return true;
+}
+
+/* Clips the rays, and leaves out those of which nothing counts. */
+static void tc_clip(const TcHalfSpace *half_spaces, int count, double radius, double most, TcPlaced *placed) {
+  for (int i = 0; i < count; ++i) {
+    const TcHalfSpace *half_space = &half_spaces[i];
+    TcWide value = tc_set_wide(half_space->at_center), slope = tc_set_wide(0);
+    for (int k = 0; k < 3; ++k) {
+      value += half_space->normal[k] * placed->from_center[k];
+      slope += half_space->normal[k] * placed->lines.direction[k];
+    }
+    for (unsigned lanes = placed->lanes; lanes; lanes &= lanes - 1) {
+      const int l = __builtin_ctz(lanes);
+      if (!tc_clip_lane(TC_AT(value, l), TC_AT(slope, l), radius, most * half_space->length, placed, l))
+        placed->lanes &= ~(1U << l);
+    }
+  }
+  for (unsigned lanes = placed->lanes; lanes; lanes &= lanes - 1) {
+    const int l = __builtin_ctz(lanes);
+    if (TC_AT(placed->begin, l) - TC_AT(placed->end, l) > TC_AT(placed->doubt, l))
+      placed->lanes &= ~(1U << l);
+  }
 }
 
 /* Where rays meet slices: as where they would be clipped, to the bit. */
@@ -61,18 +79,6 @@ static void tc_slice(const TcSurfaces *surfaces, TcPlaced *placed) {
       slope += surfaces->slice[i].normal[k] * placed->lines.direction[k];
     }
     placed->slice[i] = -value / slope;
-  }
-}
-
-/* Clips the rays, and leaves out those of which nothing counts. */
-static void tc_clip(const TcHalfSpace *half_spaces, int count, double radius, double most, TcPlaced *placed) {
-  for (unsigned lanes = placed->lanes; lanes; lanes &= lanes - 1) {
-    const int l = __builtin_ctz(lanes);
-    bool any = true;
-    for (int i = 0; i < count && any; ++i)
-      any = tc_clip_lane(&half_spaces[i], radius, most, placed, l);
-    if (!any || TC_AT(placed->begin, l) - TC_AT(placed->end, l) > TC_AT(placed->doubt, l))
-      placed->lanes &= ~(1U << l);
   }
 }
 

@@ -250,12 +250,21 @@ TC_INLINE TcMask tc_packet_cross(const unsigned on, const TcGround *ground, TcPa
   return tc_and_not(p->active, tc_or(tc_or(out[0], out[1]), out[2]));
 }
 
+/* Whether any lane has a cell ahead that is invisible, or is at the shell, as `reached` tells. */
+TC_INLINE bool tc_packet_ends(const TcShell *shell, const TcPacket *p, uint32_t reached) {
+  if (reached & TC_SHELL)
+    return true;
+  bool shown = true;
+  TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) shown &= tc_shell_shows(shell, p->cell[l]);
+  return !shown;
+}
+
 /* The active lanes whose cell ahead is invisible or beyond the shell. */
 TC_NOINLINE unsigned tc_packet_invisible(const TcShell *shell, const TcPacket *p) {
   unsigned result = 0;
   for (unsigned lanes = tc_bits(p->active); lanes; lanes &= lanes - 1) {
     const int l = __builtin_ctz(lanes);
-    if (p->cell[l] & TC_SHELL || !shell->visible[p->cell[l] >> TC_CLUSTER_BITS])
+    if (p->cell[l] & TC_SHELL || !tc_shell_shows(shell, p->cell[l]))
       result |= 1U << l;
   }
   return result;
@@ -265,10 +274,12 @@ TC_NOINLINE unsigned tc_packet_invisible(const TcShell *shell, const TcPacket *p
  * vertex fetched. */
 TC_INLINE unsigned tc_packet_reach(const unsigned on, const TcGround *ground, TcPacket *p, uint32_t reached) {
   unsigned ended = 0;
-  if (TC_UNLIKELY(ground->shell->visible != NULL))
-    ended = tc_packet_invisible(ground->shell, p);
-  else if (TC_UNLIKELY(reached & TC_SHELL))
+  if (TC_UNLIKELY(ground->shell->visible != NULL)) {
+    if (TC_UNLIKELY(tc_packet_ends(ground->shell, p, reached)))
+      ended = tc_packet_invisible(ground->shell, p);
+  } else if (TC_UNLIKELY(reached & TC_SHELL)) {
     ended = tc_bits(tc_and(p->active, tc_high_bit(tc_load_word(p->cell))));
+  }
   if (TC_UNLIKELY(ended)) {
     for (unsigned lanes = ended; lanes; lanes &= lanes - 1) {
       const int l = __builtin_ctz(lanes);

@@ -7,8 +7,8 @@
 #include <tetcast/slice.h>
 
 #include "optics/light.h"
+#include "volume/clip.h"
 #include "volume/gradients.h"
-#include "walk/clip.h"
 #include "walk/screen.h"
 
 typedef struct TcSurfaces {

@@ -152,8 +152,7 @@ static void stage_begin(Stage *stage, TetcastContext *context, const TetcastScen
   stage->job = (TcJob){.width = WIDTH, .height = HEIGHT, .samples_x = samples_x, .samples_y = 1, .to_the_end = true};
   assert_int_equal(tc_view_create(context, camera, scene->volume, (double)WIDTH / HEIGHT, &stage->job.view),
                    TETCAST_OK);
-  if (!scene->coefficients)
-    assert_int_equal(tc_scene_prepare(scene), TETCAST_OK);
+  assert_int_equal(tc_scene_prepare(scene), TETCAST_OK);
   tc_job_of_scene(scene, false, &stage->job);
   stage->expected = malloc((size_t)(PIXELS * stage->job.sums) * sizeof *stage->expected);
 }

@@ -386,7 +386,7 @@ static bool step(const Space *space, Face *face, uint32_t *cell, uint32_t vertic
 }
 
 static bool is_outside(const TcShell *shell, uint32_t cell) {
-  return (cell & TC_SHELL) || (shell->visible && !shell->visible[cell >> TC_CLUSTER_BITS]);
+  return (cell & TC_SHELL) || (shell->visible && !tc_shell_shows(shell, cell));
 }
 
 /* Walks from a face of the shell to where the ray leaves again; *from: the last cell. */

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* ── memory ── */
 
@@ -124,6 +125,7 @@ typedef struct Feature {
   TetcastRenderStats stats;
   TetcastBlend blend;
   int planes; /* 1: clipped to `oblique` */
+  bool left;  /* of the mesh without the cells that lie beyond `oblique` */
   TetcastShade shade;
   bool shadows;
   int rows;        /* 0: a transfer function of one dimension; else of so many rows */
@@ -180,6 +182,30 @@ static void set_lines(Tet *tet, int edges) {
 
 /* Its plane goes through the middle and cuts off what is next to the camera. */
 static const TetcastHalfSpace oblique = {{-0.3, 0.5, -0.8}, -0.3};
+
+/* A mesh of those cells that the clip leaves, with the same vertices. */
+static void mesh_left(const BenchMesh *mesh, BenchMesh *left) {
+  must(bench_mesh_allocate(left, mesh->type, mesh->vertex_count, mesh->cell_count), "no memory");
+  left->cell_count = 0;
+  for (int64_t i = 0; i < mesh->cell_count; i++) {
+    bool inside = false;
+    for (int j = 0; j < 4; j++) {
+      double value = -oblique.offset;
+      for (int k = 0; k < 3; k++)
+        value += oblique.normal[k] * bench_mesh_coordinate(mesh, mesh->cells[i][j], k);
+      inside = inside || value >= 0;
+    }
+    if (inside)
+      memcpy(left->cells[left->cell_count++], mesh->cells[i], sizeof *left->cells);
+  }
+  for (int64_t i = 0; i < mesh->vertex_count; i++) {
+    double position[3];
+    for (int k = 0; k < 3; k++)
+      position[k] = bench_mesh_coordinate(mesh, i, k);
+    bench_mesh_set_vertex(left, i, position);
+  }
+  bench_mesh_set_scalars(left);
+}
 
 static TetcastField *make_field(Tet *tet, const BenchMesh *mesh, int values, double *memory) {
   const bool cells = values == 1;
@@ -262,6 +288,8 @@ void job_features(const Job *job) {
       {.name = "additive", .transfer = &transfer_linear, .blend = TETCAST_BLEND_ADDITIVE},
       {.name = "clip by a plane through the middle", .transfer = &transfer_linear, .planes = 1},
       {.name = "both with knots and a clip", .transfer = &transfer_soft, .planes = 1},
+      {.name = "a mesh of what this clip leaves", .transfer = &transfer_linear, .left = true},
+      {.name = "both with knots in a mesh of what this clip leaves", .transfer = &transfer_soft, .left = true},
       {.name = "3 opaque lit isosurfaces alone", .transfer = &clear, .isosurfaces = 3},
       {.name = "3 lit isosurfaces in the volume", .transfer = &transfer_linear, .isosurfaces = -3},
       {.name = "one piece and two colours", .transfer = &transfer_blend},
@@ -282,9 +310,13 @@ void job_features(const Job *job) {
       {.name = "channel of cells", .transfer = &transfer_linear, .channels = TETCAST_CHANNEL_CELLS},
   };
   const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
-  Tet tet;
+  Tet tet, of_left;
+  BenchMesh left;
+  mesh_left(job->mesh, &left);
   tet_open(&tet, job->mesh, 1);
   tet_prepare(&tet);
+  tet_open(&of_left, &left, 1);
+  tet_prepare(&of_left);
   const int64_t most =
       job->mesh->cell_count > job->mesh->vertex_count ? job->mesh->cell_count : job->mesh->vertex_count;
   double *memory = calloc((size_t)most, sizeof *memory);
@@ -294,11 +326,15 @@ void job_features(const Job *job) {
     fields[i] = make_field(&tet, job->mesh, i, memory);
   }
   free(memory);
+  TetcastField *const left_fields[3] = {of_left.field, NULL, NULL};
   double *ends = middle_of_rays(&camera, (int64_t)job->options->pixels * job->options->pixels);
   const int count = sizeof features / sizeof *features;
   for (int round = 0; round < job->scene->rounds; round++) {
     for (int i = 0; i < count; i++) {
-      measure_feature(job, &tet, &features[i], fields, ends);
+      if (features[i].left)
+        measure_feature(job, &of_left, &features[i], left_fields, ends);
+      else
+        measure_feature(job, &tet, &features[i], fields, ends);
     }
   }
   Row row = job->row;
@@ -319,4 +355,6 @@ void job_features(const Job *job) {
     tetcast_field_destroy(&fields[i]);
   }
   tet_close(&tet);
+  tet_close(&of_left);
+  bench_mesh_release(&left);
 }

@@ -143,6 +143,82 @@ static void a_new_field_is_seen(void **state) {
   fixture_end(&fixture);
 }
 
+/* The number of cells that have, for each half-space, a vertex in it. */
+static int64_t count_left(const Cube *cube, const TetcastHalfSpace *clip, int count) {
+  int64_t left = 0;
+  for (int64_t i = 0; i < cube->cell_count; ++i) {
+    bool kept = true;
+    for (int j = 0; j < count; ++j) {
+      bool inside = false;
+      for (int k = 0; k < 4; ++k) {
+        const double *x = cube->vertices + 3 * cube->cells[4 * i + k], *n = clip[j].normal;
+        inside = inside || n[0] * x[0] + n[1] * x[1] + n[2] * x[2] >= clip[j].offset - 1e-9;
+      }
+      kept = kept && inside;
+    }
+    left += kept;
+  }
+  return left;
+}
+
+/* Cells beyond a clip are left out, and no others: slanted planes, some along faces, more of them than are looked at in
+ * one go; also together with a transfer function that leaves little visible, with a blend mode, and once the clip is
+ * gone. */
+static void what_a_clip_cuts_off_is_left_out(void **state) {
+  (void)state;
+  static const TetcastHalfSpace slanted[] = {{{-0.3, 0.5, -0.8}, -0.35}},
+                                faces[] = {{{0, 0, 1}, 0.5}, {{-1, 0, 0}, -0.75}, {{1, 0, 0}, 0.125}},
+                                edge[] = {{{0, 0, 1}, 1}}, beyond[] = {{{0, 1, 0}, 1.5}}, little[] = {{{1, 1, 1}, 0.2}};
+  TetcastHalfSpace ball[13];
+  for (int i = 0; i < 13; ++i) {
+    const double a = 2.4 * i, z = -1 + 2 * (i + 0.5) / 13, r = sqrt(1 - z * z);
+    ball[i] = (TetcastHalfSpace){{r * cos(a), r * sin(a), z}, 0};
+    for (int k = 0; k < 3; ++k)
+      ball[i].offset += 0.5 * ball[i].normal[k];
+    ball[i].offset -= 0.3;
+  }
+  static const bool cuts[] = {true, true, true, true, true, false};
+  const TetcastHalfSpace *clip[] = {slanted, faces, edge, beyond, ball, little};
+  static const int count[] = {1, 3, 1, 1, 13, 1};
+  Fixture fixture;
+  assert_int_equal(fixture_begin(&fixture, 2, 0), TETCAST_OK);
+  for (int regular = 0; regular < 2; ++regular) {
+    Cube cube = cube_create(N, regular ? 0 : 0.4);
+    Pair pair = pair_of(fixture.context, &cube);
+    TetcastField *field = field_of(fixture.context, cube.values, cube.vertex_count, TETCAST_POINT);
+    set_fields(&pair, field);
+    TetcastTransferFunction *all = peak_of(fixture.context, 0.5, 2, 3), *few = peak_of(fixture.context, 0.05, 0.03, 30);
+    for (size_t i = 0; i < sizeof count / sizeof *count; ++i) {
+      for (int j = 0; j < 2; ++j)
+        assert_int_equal(tetcast_scene_set_clip(pair.scene[j], clip[i], count[i]), TETCAST_OK);
+      /* Rays have only points in common with what is left at the edge: of these rounding decides. */
+      const int last = clip[i] == edge ? TETCAST_BLEND_COMPOSITE : TETCAST_BLEND_AVERAGE;
+      for (int blend = TETCAST_BLEND_COMPOSITE; blend <= last; ++blend) {
+        for (int j = 0; j < 2; ++j)
+          assert_int_equal(tetcast_scene_set_blend(pair.scene[j], (TetcastBlend)blend), TETCAST_OK);
+        compare(fixture.context, &pair, all, cuts[i]);
+        if (cuts[i]) {
+          const int64_t left = count_left(&cube, clip[i], count[i]);
+          assert_int_equal(pair.scene[0]->prepared->shell.visible_cells, left);
+        }
+      }
+      for (int j = 0; j < 2; ++j)
+        assert_int_equal(tetcast_scene_set_blend(pair.scene[j], TETCAST_BLEND_COMPOSITE), TETCAST_OK);
+      compare(fixture.context, &pair, few, true);
+      for (int j = 0; j < 2; ++j)
+        assert_int_equal(tetcast_scene_set_clip(pair.scene[j], NULL, 0), TETCAST_OK);
+      compare(fixture.context, &pair, NULL, true);
+      compare(fixture.context, &pair, all, false);
+    }
+    tetcast_transfer_function_destroy(&all);
+    tetcast_transfer_function_destroy(&few);
+    tetcast_field_destroy(&field);
+    pair_end(&pair);
+    cube_destroy(&cube);
+  }
+  fixture_end(&fixture);
+}
+
 /* Every cell's vertices follow from the seeds of its cluster, on meshes of all shapes. */
 static void seeds_know_their_clusters(void **state) {
   (void)state;
@@ -177,8 +253,8 @@ static void seeds_know_their_clusters(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(nothing_visible_is_left_out),
-                                     cmocka_unit_test(a_new_field_is_seen),
-                                     cmocka_unit_test(seeds_know_their_clusters)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(nothing_visible_is_left_out), cmocka_unit_test(a_new_field_is_seen),
+      cmocka_unit_test(what_a_clip_cuts_off_is_left_out), cmocka_unit_test(seeds_know_their_clusters)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

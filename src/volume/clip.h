@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Half-spaces to which what is seen is clipped. */
-#ifndef TC_WALK_CLIP_H
-#define TC_WALK_CLIP_H
+#ifndef TC_VOLUME_CLIP_H
+#define TC_VOLUME_CLIP_H
 
 /* normal · (x − the volume's centre) + at_center ≥ 0, in scaled coordinates. */
 typedef struct TcHalfSpace {
