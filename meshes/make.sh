@@ -17,6 +17,13 @@ if [ "${2:-}" = pictures ]; then
   for name in hydrogen heat trefoil shell radiograph orbital gyroid mantle section projection cloud boundary; do
     "$tetcast" render --scene "$name.json" -o "$name.png"
   done
+  # Those of the README, each with the command that is given there.
+  "$tetcast" render heat.vtu --size 640x480 -o gallery-heat.png
+  "$tetcast" render trefoil.vtu --size 640x480 --preset RdBu_r --up 0,1,0 -o gallery-trefoil.png
+  "$tetcast" render hydrogen.vtu --size 640x480 --background '#10131a' -o gallery-hydrogen.png
+  "$tetcast" render shell.vtu --size 640x480 --clip -1,0.6,0,0 --slice -1,0.6,0,0 --surface 0.12 -o gallery-shell.png
+  "$tetcast" render heat.vtu --size 640x480 --isosurface 0.2:0.25 --isosurface 0.45:0.4 --isosurface 0.8 --view -y -o gallery-surfaces.png
+  "$tetcast" transfer heat.vtu --size 154x116 --sheet gallery-sheet.png -o "$work/heat.json"
   "$tetcast" converge hydrogen.vtu --repeat 9 -o "$work/report"
   for name in time stiffness; do
     cp "$work/report/$name.png" "converge-$name.png"

@@ -391,6 +391,24 @@ const char *tetcast_preset_name(int i) {
   return tc_preset_name(i);
 }
 
+TetcastPresetKind tetcast_preset_kind(const char *name) {
+  return name ? tc_preset_kind(name) : TETCAST_PRESET_NONE;
+}
+
+TetcastStatus tetcast_transfer_function_create_preset(TetcastContext *context, const char *name, double low,
+                                                      double high, double extinction,
+                                                      TetcastTransferFunction **transfer_function) {
+  TC_ENTRY;
+  CHECK_OUT(context, transfer_function);
+  CHECK_GIVEN(context, context);
+  CHECK_GIVEN(context, name);
+  if (!isfinite(low) || !isfinite(high) || low > high)
+    return ARGUMENT(context, "range %g to %g of a preset", low, high);
+  if (!isfinite(extinction) || extinction < 0)
+    return ARGUMENT(context, "extinction %g of a preset", extinction);
+  return tc_transfer_create_preset(context, name, low, high, extinction, transfer_function);
+}
+
 void tetcast_transfer_function_destroy(TetcastTransferFunction **transfer_function) {
   TC_ENTRY;
   if (!transfer_function)

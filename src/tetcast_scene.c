@@ -7,6 +7,7 @@
 #include "base/boundary.h"
 #include "mesh/mesh.h"
 #include "optics/transfer.h"
+#include "render/outline.h"
 #include "render/render.h"
 
 TetcastStatus tetcast_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **scene) {
@@ -56,16 +57,28 @@ TetcastStatus tetcast_scene_share_field(TetcastScene *scene, const TetcastScene 
   return TETCAST_OK;
 }
 
-typedef struct CreatePreset {
+/* `shape` over [low, high], or the preset of this name. */
+typedef struct Fit {
   const TetcastScene *scene;
+  const TetcastTransferFunction *shape;
   const char *name;
   double low, high;
   TetcastTransferFunction **transfer_function;
-} CreatePreset;
+} Fit;
 
-static TetcastStatus create_preset(void *data) {
-  const CreatePreset *call = data;
-  return tc_scene_preset(call->scene, call->name, call->low, call->high, call->transfer_function);
+static TetcastStatus fit(void *data) {
+  const Fit *call = data;
+  return call->shape ? tc_scene_fit(call->scene, call->shape, call->low, call->high, call->transfer_function)
+                     : tc_scene_preset(call->scene, call->name, call->low, call->high, call->transfer_function);
+}
+
+static TetcastStatus check_fit(Fit *call) {
+  TetcastContext *context = call->scene->context;
+  if (!call->scene->values)
+    return ARGUMENT(context, "a preset needs a scene with a field");
+  if (!isfinite(call->low) || !isfinite(call->high) || call->low > call->high)
+    return ARGUMENT(context, "range %g to %g of a preset", call->low, call->high);
+  return tc_call(fit, call, NULL);
 }
 
 TetcastStatus tetcast_scene_create_preset(const TetcastScene *scene, const char *name, double low, double high,
@@ -73,14 +86,20 @@ TetcastStatus tetcast_scene_create_preset(const TetcastScene *scene, const char 
   TC_ENTRY;
   if (!scene)
     return TETCAST_ERROR_ARGUMENT;
-  TetcastContext *context = scene->context;
-  CHECK_OUT(context, transfer_function);
-  CHECK_GIVEN(context, name);
-  if (!scene->values)
-    return ARGUMENT(context, "a preset needs a scene with a field");
-  if (!isfinite(low) || !isfinite(high) || low > high)
-    return ARGUMENT(context, "range %g to %g of a preset", low, high);
-  return tc_call(create_preset, &(CreatePreset){scene, name, low, high, transfer_function}, NULL);
+  CHECK_OUT(scene->context, transfer_function);
+  CHECK_GIVEN(scene->context, name);
+  return check_fit(&(Fit){scene, NULL, name, low, high, transfer_function});
+}
+
+TetcastStatus tetcast_scene_fit_transfer_function(const TetcastScene *scene, const TetcastTransferFunction *shape,
+                                                  double low, double high,
+                                                  TetcastTransferFunction **transfer_function) {
+  TC_ENTRY;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
+  CHECK_OUT(scene->context, transfer_function);
+  CHECK_GIVEN(scene->context, shape);
+  return check_fit(&(Fit){scene, shape, NULL, low, high, transfer_function});
 }
 
 TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene,
@@ -201,18 +220,6 @@ TetcastStatus tetcast_scene_set_boundary(TetcastScene *scene, const TetcastBound
   if (!scene->boundary.colored)
     memset(scene->boundary.color, 0, sizeof scene->boundary.color);
   tc_scene_forget(scene);
-  return TETCAST_OK;
-}
-
-TetcastStatus tetcast_scene_set_outline(TetcastScene *scene, const double color[3]) {
-  TC_ENTRY;
-  if (!scene)
-    return TETCAST_ERROR_ARGUMENT;
-  if (color && !is_color(color))
-    return ARGUMENT(scene->context, "outline: a colour is negative or not finite");
-  scene->outlined = color != NULL;
-  for (int k = 0; color && k < 3; ++k)
-    scene->outline_color[k] = color[k];
   return TETCAST_OK;
 }
 
@@ -391,8 +398,6 @@ static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderD
       return ARGUMENT(context, "a frame of %d groups, but the scene has %d", frame->groups, c->groups);
     }
   }
-  if (scene->outlined && tc_frame_channel(frame, TETCAST_CHANNEL_VALUE))
-    return ARGUMENT(context, "with an outline there is no channel value, by which pictures are coloured anew");
   if (c && scene->blend)
     return ARGUMENT(context, "with coefficients there is only the blend mode composite");
   if (scene->blend && !exact)
@@ -491,6 +496,21 @@ static TetcastStatus check_adaptive(const TetcastScene *scene, const TetcastRend
   return TETCAST_OK;
 }
 
+/* Whether the frame can be a part of the picture, if it is to be. */
+static TetcastStatus check_rows(const TetcastScene *scene, const TetcastRenderDesc *desc, const TetcastFrame *frame) {
+  TetcastContext *context = scene->context;
+  if (desc->picture_height == 0)
+    return TETCAST_OK;
+  if (desc->picture_height < 0 || desc->picture_height > 1 << 20 || desc->first_row < 0 ||
+      desc->first_row > desc->picture_height - frame->height) {
+    return ARGUMENT(context, "%" PRId64 " rows from row %" PRId64 " on, of a picture with %" PRId64, frame->height,
+                    desc->first_row, desc->picture_height);
+  }
+  if (desc->stop || desc->start || desc->adaptive_coarse > 0)
+    return ARGUMENT(context, "rows of a picture: not possible with stop, start or adaptive");
+  return TETCAST_OK;
+}
+
 typedef struct SceneRender {
   const TetcastScene *scene;
   const TetcastCamera *camera;
@@ -534,6 +554,8 @@ TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamer
   if (!status)
     status = check_adaptive(scene, desc, frame);
   if (!status)
+    status = check_rows(scene, desc, frame);
+  if (!status)
     status = check_camera(context, camera);
   if (!status && desc->stop)
     status = check_stop(context, desc->stop, "stop", frame);
@@ -541,4 +563,67 @@ TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamer
     status = check_stop(context, desc->start, "start", frame);
   SceneRender call = {scene, camera, *desc, frame, stats};
   return status ? status : tc_call(scene_render, &call, &call.desc.progress);
+}
+
+typedef struct Scale {
+  const TetcastScene *scene;
+  const TetcastTransferFunction *shape;
+  const TcView *view;
+  double opacity;
+  TetcastTransferFunction **transfer_function;
+} Scale;
+
+static TetcastStatus scale(void *data) {
+  const Scale *call = data;
+  return tc_scene_scale(call->scene, call->shape, call->view, call->opacity, call->transfer_function);
+}
+
+TetcastStatus tetcast_scene_scale_transfer_function(const TetcastScene *scene, const TetcastTransferFunction *shape,
+                                                    const TetcastCamera *camera, double opacity,
+                                                    TetcastTransferFunction **transfer_function) {
+  TC_ENTRY;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
+  TetcastContext *context = scene->context;
+  CHECK_OUT(context, transfer_function);
+  CHECK_GIVEN(context, shape);
+  CHECK_GIVEN(context, camera);
+  if (!scene->values)
+    return ARGUMENT(context, "a transfer function is scaled by a scene with a field");
+  if (!(opacity > 0 && opacity < 1))
+    return ARGUMENT(context, "opacity %g is not between 0 and 1", opacity);
+  TcView view;
+  TetcastStatus status = check_camera(context, camera);
+  if (!status)
+    status = tc_view_create(context, camera, scene->volume, 4.0 / 3, &view);
+  return status ? status : tc_call(scale, &(Scale){scene, shape, &view, opacity, transfer_function}, NULL);
+}
+
+TetcastStatus tetcast_scene_draw_outline(const TetcastScene *scene, const TetcastCamera *camera,
+                                         const TetcastRenderDesc *desc, const double color[3], TetcastFrame *frame) {
+  TC_ENTRY;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
+  TetcastContext *context = scene->context;
+  CHECK_GIVEN(context, camera);
+  CHECK_GIVEN(context, color);
+  CHECK_GIVEN(context, frame);
+  const TetcastRenderDesc standard = tetcast_render_desc_default();
+  if (!desc)
+    desc = &standard;
+  CHECK_DESC(context, desc);
+  if (!is_color(color))
+    return ARGUMENT(context, "outline: a colour is negative or not finite");
+  TcView view;
+  TetcastStatus status = check_camera(context, camera);
+  if (!status && desc->stop)
+    status = check_stop(context, desc->stop, "stop", frame);
+  if (!status)
+    status = check_rows(scene, desc, frame);
+  const int64_t height = desc->picture_height ? desc->picture_height : frame->height;
+  if (!status)
+    status = tc_view_create(context, camera, scene->volume, (double)frame->width / (double)height, &view);
+  if (!status)
+    tc_outline_draw(scene->volume, &view, desc->stop, color, height, desc->picture_height ? desc->first_row : 0, frame);
+  return status;
 }

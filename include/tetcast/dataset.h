@@ -48,6 +48,10 @@ typedef struct TetcastDatasetDesc {
   /* Whether points stay where an Exodus file has them at first. If not, they are moved by the step's displacements: the
    * first vector of the points whose name begins with "dis", in upper or lower case. Default: false. */
   bool no_displacement;
+  /* Factors > 0 on the coordinates x, y and z, after points are moved and merged and before cells are cut: everything
+   * is then in the stretched system. Values of arrays stay as they are, those of vectors, too. A coordinate that its
+   * type can't hold then is TETCAST_ERROR_DATA. Default: 1, 1, 1. */
+  double stretch[3];
 } TetcastDatasetDesc;
 
 /* Makes a desc of all blocks, all arrays and the first step, with every setting at its default. */
@@ -195,6 +199,15 @@ TETCAST_API TetcastStatus tetcast_surface_read(TetcastContext *context, const ch
 
 /* Frees the arrays of a surface that tetcast_surface_read() has filled, and sets it to zero. */
 TETCAST_API void tetcast_surface_release(TetcastSurface *surface);
+
+/* Is told of an element of an XML file where it begins: how many others it lies in, its name, and its attributes, each
+ * a name and a value, NULL behind the last. All are valid during the call only. */
+typedef void TetcastXmlElement(void *user, int depth, const char *name, const char *const *attributes);
+
+/* Reads an XML file of any kind, calling element(user, …) for each element in turn; what stands between them is passed
+ * over. The file may turn out to be damaged (TETCAST_ERROR_DATA) when some were told already. */
+TETCAST_API TetcastStatus tetcast_xml_read(TetcastContext *context, const char *path, TetcastXmlElement *element,
+                                           void *user);
 
 #ifdef __cplusplus
 }

@@ -9,6 +9,7 @@
 #include <tetcast/context.h>
 #include <tetcast/frame.h>
 #include <tetcast/status.h>
+#include <tetcast/transfer_function.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -26,6 +27,38 @@ typedef enum TetcastPixelType {
   TETCAST_PIXEL_DOUBLE
 } TetcastPixelType;
 
+/* A colour map or a list of colours with words beside it, drawn over the right of a picture by OpenImageIO's functions.
+ */
+typedef struct TetcastLegend {
+  /* What the colours stand for, in UTF-8; NULL: nothing is written above them. */
+  const char *title;
+  /* [color_count][3]: red, green and blue in [0, 1]; of a bar from below at equal distances, of categories from above.
+   */
+  const double *colors;
+  /* The number of colours, at least 1. */
+  int color_count;
+  /* [label_count]: words or numbers in UTF-8; of a bar at their places, of categories one for each colour. */
+  const char *const *labels;
+  /* [label_count]: where a bar's labels are, from 0, its lower end, to 1; not read for categories. */
+  const double *places;
+  /* The number of labels, at least 0. */
+  int label_count;
+  /* Not 0: each colour is one of a list; else they are a bar that goes from one colour to the next. */
+  int categories;
+} TetcastLegend;
+
+/* Words in a picture. */
+typedef struct TetcastCaption {
+  /* In UTF-8. */
+  const char *text;
+  /* Where they begin, in pixels from the left. */
+  int64_t x;
+  /* Where their middle line is, in pixels from the top. */
+  int64_t y;
+  /* The height of letters and the room between lines, in pixels, in [6, 400]. */
+  int size;
+} TetcastCaption;
+
 /* How an image is written. */
 typedef struct TetcastImageDesc {
   /* Set by tetcast_image_desc_default(), so that a struct which was not made by it is told apart. */
@@ -36,6 +69,24 @@ typedef struct TetcastImageDesc {
    * Floating-point pixels hold the frame as it is, premultiplied, without a background. Default: 1, 1, 1, 1, opaque
    * white. */
   double background[4];
+  /* Not 0: `background` is that of the uppermost row, and goes over to `background_below`. Default: 0. */
+  int background_shaded;
+  /* As `background`, of the lowest row, with the same alpha. Not read unless the background is shaded. */
+  double background_below[4];
+  /* What is drawn over integer pixels that are at least 240 × 160 and leave room for it; floating-point pixels hold the
+   * frame alone. Without a font there are no words, with a warning. NULL, the default: nothing. */
+  const TetcastLegend *legend;
+  /* [caption_count]: words that are drawn over integer pixels. NULL, the default: none. */
+  const TetcastCaption *captions;
+  /* The number of `captions`. Default: 0. */
+  int caption_count;
+  /* Integer pixels' colours are multiplied by 2^exposure before they are composited over the background, which is not.
+   * Floating-point pixels are not changed. Finite. Default: 0. */
+  double exposure;
+  /* Not 0: colours are linear radiance, which floating-point files then state; else they are those of transfer
+   * functions, which are display values (sRGB). Integer pixels are display values always. PNG and
+   * JPEG state it as colour space, EXR and TIFF in words. Default: 0. */
+  int linear;
   /* Not 0: only the frame's channels are written, without red, green, blue and alpha; it must have some. Default: 0. */
   int channels_only;
   /* [channel_count]: the frame's channels that are written, in this order, none twice. NULL (the default): all of them,
@@ -64,6 +115,26 @@ TETCAST_API TetcastImageDesc tetcast_image_desc_default(void);
  * is often built with OpenVDB, whose logger insists on threads when it is loaded). */
 TETCAST_API TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, const TetcastFrame *frame,
                                               const TetcastImageDesc *desc);
+
+/* A picture that is written in bands of rows, as when it doesn't fit into memory. */
+typedef struct TetcastImage TetcastImage;
+
+/* Begins a picture of so many rows at `path`; `frame` is the first band, which is written by tetcast_image_add() like
+ * the others. For .png, .exr and .tif; all else is as with tetcast_image_write(), and so is the file, to the byte, but
+ * that TETCAST_PIXEL_DEFAULT is half for EXR whatever the colours are. */
+TETCAST_API TetcastStatus tetcast_image_begin(TetcastContext *context, const char *path, const TetcastFrame *frame,
+                                              int64_t height, const TetcastImageDesc *desc, TetcastImage **image);
+
+/* Adds the next rows, with the width, type and channels of the first band; all bands but the last have a multiple
+ * of 64.
+ */
+TETCAST_API TetcastStatus tetcast_image_add(TetcastImage *image, const TetcastFrame *frame);
+
+/* Makes the file appear, of which all rows must have been added, and frees the image, also where that fails. */
+TETCAST_API TetcastStatus tetcast_image_end(TetcastImage **image);
+
+/* Frees an image without a trace of its file, and sets *image to NULL. NULL and pointer to NULL do nothing. */
+TETCAST_API void tetcast_image_destroy(TetcastImage **image);
 
 /* A deep picture: of each pixel's ray the light of parts that follow each other, so that other deep pictures can be
  * composited into it. It is plain memory of the caller's. The parts are equally long: part i of n goes from the

@@ -52,6 +52,26 @@ TETCAST_API TetcastStatus tetcast_scene_share_field(TetcastScene *scene, const T
 TETCAST_API TetcastStatus tetcast_scene_create_preset(const TetcastScene *scene, const char *name, double low,
                                                       double high, TetcastTransferFunction **transfer_function);
 
+/* Makes a transfer function that has the colours of `shape`, and its extinctions multiplied by the one factor that
+ * makes the pixels in which this camera sees matter opaque to `opacity` on average, in (0, 1), as far as at most one in
+ * twenty is opaque to more than 0.99. Looked at is a picture of 48 × 36 rays. If all extinctions are 0 they stay that;
+ * if no ray meets any, the largest is made 1 over the radius of the volume's bounding sphere. The scene must have a
+ * field (TETCAST_ERROR_ARGUMENT). The caller destroys the result. */
+TETCAST_API TetcastStatus tetcast_scene_scale_transfer_function(const TetcastScene *scene,
+                                                                const TetcastTransferFunction *shape,
+                                                                const TetcastCamera *camera, double opacity,
+                                                                TetcastTransferFunction **transfer_function);
+
+/* Makes a transfer function from a shape over [0, 1] of any colours and extinctions: 0 comes to lie at `low`, 1 at
+ * `high`, and all extinctions are times the factor by which rays that meet the volume are opaque to one half on
+ * average, as far as a mean optical depth between 0.25 and 6 allows it. So it is what tetcast_scene_create_preset()
+ * makes if the shape is a preset over [0, 1]. Where low is high: the colour of 0.5 and the largest extinction. The
+ * scene must have a field; low > high, or a number that isn't finite, is TETCAST_ERROR_ARGUMENT. The caller destroys
+ * the result. */
+TETCAST_API TetcastStatus tetcast_scene_fit_transfer_function(const TetcastScene *scene,
+                                                              const TetcastTransferFunction *shape, double low,
+                                                              double high, TetcastTransferFunction **transfer_function);
+
 /* Sets or replaces the transfer function, of which the scene takes a copy. Must not run while this scene renders. On
  * error the scene keeps its former transfer function, or its coefficients. */
 TETCAST_API TetcastStatus tetcast_scene_set_transfer_function(TetcastScene *scene,
@@ -112,13 +132,6 @@ TETCAST_API TetcastStatus tetcast_scene_set_slices(TetcastScene *scene, const Te
 /* Sets how the mesh's boundary is seen; NULL: not at all, as in a new scene. With TETCAST_TRAVERSAL_FACES, which knows
  * no boundary, it is TETCAST_ERROR_ARGUMENT. Must not run while this scene renders. */
 TETCAST_API TetcastStatus tetcast_scene_set_boundary(TetcastScene *scene, const TetcastBoundary *boundary);
-
-/* Draws the edges of the mesh's bounding box into pictures, about a pixel wide, in this colour: red, green and blue,
- * not premultiplied, each at least 0 and finite. NULL: they aren't drawn, as in a new scene. They are composited where
- * they are: those of the box's faces that are seen from outside lie before all of the mesh, others behind it; what
- * TetcastRenderDesc.stop hides is not drawn. Channels don't know of them, and a frame with TETCAST_CHANNEL_VALUE, which
- * can be coloured anew, has none (TETCAST_ERROR_ARGUMENT when rendering). Must not run while this scene renders. */
-TETCAST_API TetcastStatus tetcast_scene_set_outline(TetcastScene *scene, const double color[3]);
 
 /* Sets the light; `desc` may be NULL: as a new scene has it, the default. Must not run while this scene renders. On
  * error the scene keeps what it had. */
@@ -206,6 +219,12 @@ typedef struct TetcastRenderDesc {
    * So pictures are made of parts of rays, which composited front to back give the whole. What is met exactly where one
    * part ends and the next begins is in one of them, but for the boundary's faces, which may be in both. */
   const TetcastArray *start;
+  /* Above 0: the frame has some rows of a picture with so many, each of which is, to the bit, what it is in the whole
+   * picture; a picture that doesn't fit into memory is made so. At least first_row + the frame's height, at most 2^20.
+   * Default: 0, the frame is the picture. Not with `stop`, `start` or adaptive_coarse (TETCAST_ERROR_ARGUMENT). */
+  int64_t picture_height;
+  /* With picture_height, the row of the picture that is the frame's first. Default: 0, the topmost. */
+  int64_t first_row;
   /* Above 0, a power of two up to 64: rays are cast where the picture has something to show, not through every pixel
    * (Levoy 1990). First there is one at every so many pixels, in both directions; a square between four of them is cut
    * into four, and so on down to single pixels, unless all four channels of its corners differ by less than
@@ -263,6 +282,15 @@ typedef struct TetcastRenderStats {
 TETCAST_API TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamera *camera,
                                                const TetcastRenderDesc *desc, TetcastFrame *frame,
                                                TetcastRenderStats *stats);
+
+/* Draws the edges of the mesh's bounding box into a frame that this scene was rendered to from this camera, about a
+ * pixel wide, in a colour: red, green and blue, not premultiplied, each at least 0 and finite. They are composited
+ * where they are: those of the box's faces that are seen from outside lie before all of the mesh, others behind it.
+ * `desc`: with which the frame was rendered, NULL: the default; the distances of its `stop` hide edges, and the frame
+ * has the rows of the picture that it says. The frame's channels are not changed. */
+TETCAST_API TetcastStatus tetcast_scene_draw_outline(const TetcastScene *scene, const TetcastCamera *camera,
+                                                     const TetcastRenderDesc *desc, const double color[3],
+                                                     TetcastFrame *frame);
 
 #ifdef __cplusplus
 }

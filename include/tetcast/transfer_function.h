@@ -64,8 +64,32 @@ TETCAST_API TetcastStatus tetcast_transfer_function_create(TetcastContext *conte
                                                            const TetcastTransferFunctionDesc *desc,
                                                            TetcastTransferFunction **transfer_function);
 
-/* Name of preset i = 0, 1, …; NULL beyond the last. Static storage. */
+/* Name of preset i = 0, 1, …: of a colour map. NULL beyond the last. Static storage. Wherever a preset is named, the
+ * name with "_r" behind it is the reverse: the same colours from the last to the first. */
 TETCAST_API const char *tetcast_preset_name(int i);
+
+/* What colours of a preset are for. */
+typedef enum TetcastPresetKind {
+  /* There is no preset of that name. */
+  TETCAST_PRESET_NONE = 0,
+  /* From little to much. */
+  TETCAST_PRESET_SEQUENTIAL,
+  /* From the middle to both sides: the middle of the range has a meaning, such as 0. */
+  TETCAST_PRESET_DIVERGING,
+  /* Things of different kinds: constant colours, in steps of equal width. */
+  TETCAST_PRESET_CATEGORICAL
+} TetcastPresetKind;
+
+/* The kind of the preset of this name, or of its reverse. NULL is TETCAST_PRESET_NONE. */
+TETCAST_API TetcastPresetKind tetcast_preset_kind(const char *name);
+
+/* Makes a transfer function from a colour map: the colours of preset `name` over [low, high], with an extinction that
+ * rises linearly from 0 at `low` to `extinction` ≥ 0 [1/length] at `high`. Where low is high: the colour of the map's
+ * middle and this extinction. An unknown name, low > high, or a number that isn't finite is TETCAST_ERROR_ARGUMENT. The
+ * caller destroys the result. */
+TETCAST_API TetcastStatus tetcast_transfer_function_create_preset(TetcastContext *context, const char *name, double low,
+                                                                  double high, double extinction,
+                                                                  TetcastTransferFunction **transfer_function);
 
 /* Frees it and sets the pointer to NULL. NULL and pointer to NULL do nothing. Scenes have copies of what they need. */
 TETCAST_API void tetcast_transfer_function_destroy(TetcastTransferFunction **transfer_function);

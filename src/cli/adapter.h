@@ -29,7 +29,8 @@
   X(TetcastStatus, dataset_write,                                                                                      \
     (TetcastContext *, const char *, const TetcastMesh *, int, const char *const *, const TetcastField *const *))      \
   X(TetcastStatus, surface_read, (TetcastContext *, const char *, TetcastSurface *))                                   \
-  X(void, surface_release, (TetcastSurface *))
+  X(void, surface_release, (TetcastSurface *))                                                                         \
+  X(TetcastStatus, xml_read, (TetcastContext *, const char *, TetcastXmlElement *, void *))
 
 #define CLI_TETGEN_FUNCTIONS(X)                                                                                        \
   X(TetcastTetgenDesc, tetgen_desc_default, (void))                                                                    \
@@ -39,6 +40,11 @@
 #define CLI_IMAGE_FUNCTIONS(X)                                                                                         \
   X(TetcastImageDesc, image_desc_default, (void))                                                                      \
   X(TetcastStatus, image_write, (TetcastContext *, const char *, const TetcastFrame *, const TetcastImageDesc *))      \
+  X(TetcastStatus, image_begin,                                                                                        \
+    (TetcastContext *, const char *, const TetcastFrame *, int64_t, const TetcastImageDesc *, TetcastImage **))        \
+  X(TetcastStatus, image_add, (TetcastImage *, const TetcastFrame *))                                                  \
+  X(TetcastStatus, image_end, (TetcastImage **))                                                                       \
+  X(void, image_destroy, (TetcastImage **))                                                                            \
   X(TetcastStatus, image_write_deep, (TetcastContext *, const char *, const TetcastDeep *, TetcastPixelType))          \
   X(TetcastStatus, image_check, (TetcastContext *, const char *, const TetcastImageDesc *))                            \
   X(TetcastStatus, image_read_depth, (TetcastContext *, const char *, int64_t, int64_t, double *))

@@ -13,13 +13,14 @@ static const struct {
   int (*options)(CompletionOption list[COMPLETION_OPTIONS]);
 } commands[] = {{"render", completion_of_render},
                 {"converge", completion_of_converge},
+                {"transfer", completion_of_transfer},
                 {"info", completion_of_info},
                 {"mesh", completion_of_mesh}};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 /* The first words of a command line, and what two of them go on with. */
-static const char first[] = "render converge info mesh completion help",
-                  helped[] = "render converge info mesh completion", shells[] = "bash zsh fish";
+static const char first[] = "render converge transfer info mesh completion help",
+                  helped[] = "render converge transfer info mesh completion", shells[] = "bash zsh fish";
 
 /* "a b c"; `colon` stands for one. */
 static void put_words(const char *const *words, const char *colon) {
@@ -89,7 +90,11 @@ static void put_zsh_option(const CompletionOption *option, const char *dashes, c
   printf(" \\\n        '%s%s", dashes, name);
   if (option->kind != COMPLETION_FLAG)
     printf("%s:%s:", sign, option->name);
-  if (option->kind == COMPLETION_PATH) {
+  if (option->kind == COMPLETION_PATH && option->words) {
+    fputs("{compadd -- ", stdout);
+    put_words(option->words, "\\:");
+    fputs("; _files}", stdout);
+  } else if (option->kind == COMPLETION_PATH) {
     fputs("_files", stdout);
   } else if (option->words) {
     putchar('(');

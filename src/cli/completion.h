@@ -8,7 +8,7 @@ struct option;
 typedef enum CompletionKind {
   COMPLETION_FLAG,  /* takes no value */
   COMPLETION_VALUE, /* a value of which nothing is known */
-  COMPLETION_PATH   /* the path of a file or folder */
+  COMPLETION_PATH   /* the path of a file or folder, or one of the words if there are any */
 } CompletionKind;
 
 typedef struct CompletionOption {
@@ -18,10 +18,11 @@ typedef struct CompletionOption {
   const char *const *words; /* of a value some that it may have, NULL at the end; NULL: none are known */
 } CompletionOption;
 
-enum { COMPLETION_OPTIONS = 64 /* of a command, at most */, COMPLETION_WORDS = 64 };
+enum { COMPLETION_OPTIONS = 128 /* of a command, at most */, COMPLETION_WORDS = 64 };
 
 /* The options of each command; how many there are. */
 int completion_of_render(CompletionOption list[COMPLETION_OPTIONS]);
+int completion_of_transfer(CompletionOption list[COMPLETION_OPTIONS]);
 int completion_of_converge(CompletionOption list[COMPLETION_OPTIONS]);
 int completion_of_info(CompletionOption list[COMPLETION_OPTIONS]);
 int completion_of_mesh(CompletionOption list[COMPLETION_OPTIONS]);

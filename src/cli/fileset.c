@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli.h"
+#include "preset_name.h"
 
 void fileset_add(FileSet *set, const char *what, const char *path, bool written) {
   if (!path)
@@ -19,6 +20,9 @@ void fileset_add_options(FileSet *set, const RenderOptions *options) {
     fileset_add(set, "the input", options->inputs[i], false);
   fileset_add(set, "--scene", options->scene, false);
   fileset_add(set, "--transfer", options->transfer_object ? NULL : options->transfer, false);
+  char *preset = preset_name_is_file(render_options_preset(options)) ? preset_name_path(options->preset) : NULL;
+  fileset_add(set, "--preset", preset, false);
+  free(preset);
   fileset_add(set, "--stop-depth", options->stop_depth, false);
   fileset_add(set, "--stats", options->stats, true);
   fileset_add(set, "--save-scene", options->save_scene, true);

@@ -9,7 +9,7 @@
 #include "cli.h"
 #include "file.h"
 
-json_t *cli_json_read(const char *path) {
+json_t *cli_json_read_any(const char *path) {
   FILE *file = fopen(path, "rb");
   if (!file) {
     cli_error("cannot open '%s': %s", path, strerror(errno));
@@ -25,9 +25,14 @@ json_t *cli_json_read(const char *path) {
     json_decref(object);
     return NULL;
   }
-  if (!object) {
+  if (!object)
     cli_error("%s:%d: %s", path, error.line, error.text);
-  } else if (!json_is_object(object)) {
+  return object;
+}
+
+json_t *cli_json_read(const char *path) {
+  json_t *object = cli_json_read_any(path);
+  if (object && !json_is_object(object)) {
     cli_error("%s: expected a JSON object", path);
     json_decref(object);
     object = NULL;

@@ -9,6 +9,9 @@
 /* The object in a file, for json_decref(); NULL after a message with file and line. Every number comes as a real. */
 json_t *cli_json_read(const char *path);
 
+/* The same of a file whose value is of any kind. */
+json_t *cli_json_read_any(const char *path);
+
 /* The numbers of an array of up to `most`, or of a single number: how many, 0 if the value is anything else. */
 int cli_json_numbers(const json_t *value, int most, double *values);
 

@@ -8,10 +8,16 @@
 #include <tetcast/dataset.h>
 #include <tetcast/tetcast.h>
 
+#include "render_options.h"
+
 /* Whether a dataset has no array that could be drawn: none at all, or only numbers of blocks, materials and the like
  * over its cells. *label becomes the name of those that colour tells apart, valid while the dataset lives; NULL: there
  * are none. */
 bool matter_wanted(const TetcastDataset *dataset, const char **label);
+
+/* Whether the values of this array are numbers of materials and the like: whole ones of cells, of which there are few.
+ */
+bool matter_is_label(const TetcastDataset *dataset, const char *selector, const TetcastField *field);
 
 /* A scalar that is 1 at each vertex. */
 TetcastStatus matter_field(TetcastContext *context, const TetcastMesh *mesh, TetcastField **field);
@@ -26,10 +32,10 @@ typedef struct Matter {
 TetcastStatus matter_measure(TetcastContext *context, const TetcastVolume *volume, const TetcastMesh *mesh,
                              const TetcastField *labels, Matter *matter);
 
-/* The same extinction for all labels, and a colour for each; preset NULL: colours that neighbours in the list don't
- * share, else that colour map over the range. The scene has the labels for its field. */
-TetcastStatus matter_shade(TetcastContext *context, const TetcastScene *scene, const Matter *matter, const char *preset,
-                           const double range[2], TetcastTransferFunction **transfer_function);
+/* The same extinction for all labels, and a colour for each: that of `map`, or (NULL) what is said of them as --label
+ * has it, else one that neighbours in the list don't share. */
+TetcastStatus matter_shade(TetcastContext *context, const Matter *matter, const TetcastTransferFunction *map,
+                           const TextList *said, TetcastTransferFunction **transfer_function);
 
 void matter_release(Matter *matter);
 

@@ -46,16 +46,15 @@ static TetcastStatus color_by_picture(Run *run) {
     return TETCAST_OK;
   Stage *stage = &run->stage;
   tetcast_transfer_function_destroy(&stage->transfer_function);
-  const TetcastStatus status = tetcast_scene_create_preset(stage->scene, render_options_preset(&run->options), range[0],
-                                                           range[1], &stage->transfer_function);
+  const TetcastStatus status = stage_preset(stage, &run->options, range, &stage->transfer_function);
   return status == TETCAST_OK ? tetcast_frame_recolor(run->frame, stage->transfer_function) : status;
 }
 
-int picture_create_frame(Run *run) {
+int picture_create_frame(Run *run, int64_t width, int64_t height) {
   const RenderOptions *options = &run->options;
   TetcastFrameDesc desc = tetcast_frame_desc_default();
-  desc.width = (int64_t)options->size[0];
-  desc.height = (int64_t)options->size[1];
+  desc.width = width;
+  desc.height = height;
   desc.type = options->pixel_type == TETCAST_PIXEL_DOUBLE ? TETCAST_TYPE_FLOAT64 : TETCAST_TYPE_FLOAT32;
   desc.channels = render_options_channels(options);
   if (range_of_picture(run)) /* it is coloured by them; they are written if they were asked for */
@@ -90,10 +89,11 @@ static void check_brightness(const Run *run) {
     if (i % 4 < 3 && pixels[i] > brightest)
       brightest = pixels[i];
   const bool radiance = render_options_given(&run->options, OPTION_EMISSION);
-  if (brightest > 1)
+  const double shown = (double)brightest * render_options_gain(&run->options);
+  if (shown > 1)
     cli_warning("%s up to %g: above 1 all is white in integer pixels; .exr and .tif hold it as it is",
                 radiance ? "radiance" : "colours", (double)brightest);
-  else if (radiance && brightest > 0 && brightest < 1.0f / 255)
+  else if (radiance && brightest > 0 && shown < 1.0 / 255)
     cli_warning("radiance up to %g: below 1/255 all is black in integer pixels; .exr and .tif hold it as it is",
                 (double)brightest);
 }
@@ -127,6 +127,9 @@ int picture_render(Run *run) {
   RunStats *stats = &run->stats;
   stats->threads = tetcast_context_threads(run->stage.context);
   stats->repeats = (int)run->options.repeat;
+  stats->read_seconds = run->stage.read_seconds;
+  stats->prepare_seconds = run->stage.prepare_seconds;
+  stats->volume = run->stage.info;
   if (!stats->render_seconds)
     stats->render_seconds = cli_allocate(sizeof(double) * (size_t)stats->repeats);
   TetcastRenderDesc desc = tetcast_render_desc_default();
@@ -137,6 +140,8 @@ int picture_render(Run *run) {
   } else {
     desc.samples = (int)run->options.samples;
   }
+  desc.picture_height = run->picture_height;
+  desc.first_row = run->first_row;
   desc.isa = (TetcastIsa)run->options.isa;
   desc.tolerance = stats->tolerance = run->options.tolerance;
   stats->blend = render_option_choice(OPTION_BLEND, (int)render_options_blend(&run->options));
@@ -169,17 +174,35 @@ int picture_render(Run *run) {
   return cli_verdict(CLI_DONE);
 }
 
+json_t *picture_stats(const Run *run) {
+  json_t *object = stats_object(&run->stats);
+  json_object_update_new(object, stage_choices(&run->stage, &run->options));
+  return object;
+}
+
+TetcastStatus picture_decorate(Run *run, Decoration *decoration, TetcastImageDesc *desc) {
+  const TetcastArray stop = picture_stop(run);
+  TetcastRenderDesc render = tetcast_render_desc_default();
+  render.stop = run->stop ? &stop : NULL;
+  render.picture_height = run->picture_height;
+  render.first_row = run->first_row;
+  decoration_make(&run->stage, &run->options, decoration);
+  desc->legend = decoration->colors ? &decoration->legend : NULL;
+  return decoration_outline(&run->stage, &run->options, &render, run->frame);
+}
+
 int picture_write(Run *run, const char *path) {
   const Stage *stage = &run->stage;
   picture_await_image(run);
   const double start = cli_seconds();
-  const TetcastStatus status =
-      render_options_deep(&run->options)
-          ? run->image->image_write_deep(stage->context, path, &run->deep.image, run->image_desc.pixel_type)
-          : run->image->image_write(stage->context, path, run->frame, &run->image_desc);
+  Decoration decoration;
+  TetcastImageDesc desc = run->image_desc;
+  TetcastStatus status = picture_decorate(run, &decoration, &desc);
+  if (status == TETCAST_OK)
+    status = render_options_deep(&run->options)
+                 ? run->image->image_write_deep(stage->context, path, &run->deep.image, desc.pixel_type)
+                 : run->image->image_write(stage->context, path, run->frame, &desc);
+  decoration_release(&decoration);
   run->stats.write_seconds = cli_seconds() - start;
-  run->stats.read_seconds = stage->read_seconds;
-  run->stats.prepare_seconds = stage->prepare_seconds;
-  run->stats.volume = stage->info;
   return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }

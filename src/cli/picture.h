@@ -7,6 +7,7 @@
 #include <semaphore.h>
 
 #include "adapter.h"
+#include "decoration.h"
 #include "deep.h"
 #include "json.h"
 #include "render_options.h"
@@ -24,15 +25,23 @@ typedef struct Run {
   bool image_pending; /* image_thread still has to be waited for */
   Stage stage;
   TetcastFrame *frame;
-  Deep deep;      /* of a deep picture; else zeros */
-  RunStats stats; /* of the last picture */
+  Deep deep;                         /* of a deep picture; else zeros */
+  RunStats stats;                    /* of the last picture */
+  int64_t picture_height, first_row; /* where the frame is a band of the picture; else 0 */
 } Run;
 
 /* Each step returns an exit code. */
 int picture_read_stop(Run *run); /* what --stop-depth names, with run->image at hand */
-int picture_create_frame(Run *run);
+int picture_create_frame(Run *run, int64_t width, int64_t height);
 int picture_render(Run *run);
 int picture_write(Run *run, const char *path);
+
+/* Draws what goes round the picture: into the frame, which has been looked at by then, and as *desc says from here on,
+ * which *decoration owns. */
+TetcastStatus picture_decorate(Run *run, Decoration *decoration, TetcastImageDesc *desc);
+
+/* The statistics of the last picture, and which array, colours and view it shows and why; the caller releases it. */
+json_t *picture_stats(const Run *run);
 
 /* run->stop as the library takes it. */
 TetcastArray picture_stop(const Run *run);

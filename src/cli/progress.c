@@ -78,6 +78,9 @@ bool cli_progress_show(double fraction) {
     memset(cells, '#', (size_t)filled);
     cells[BAR_WIDTH] = '\0';
     fprintf(stderr, "\r%-10s [%s] %3d %%", bar.label, cells, (int)(100 * fraction));
+    const double left = fraction > 0 ? (now - bar.started) / fraction * (1 - fraction) : 0;
+    if (bar.whole && left > 0) /* of work that takes long; what was longer before is removed */
+      fprintf(stderr, left < 100 ? ", %.0f s left\033[K" : ", %.0f min left\033[K", left < 100 ? left : left / 60);
     bar.drawn = now;
     bar.visible = true;
   }

@@ -22,7 +22,7 @@ int cli_interrupted(void);
 TetcastProgress cli_progress(const char *label);
 
 /* Until this is called with NULL, all bars are the part from `begin` to `end` of one bar with this label, which stays
- * valid. */
+ * valid; it tells how long the rest takes if it goes on as before. */
 void cli_progress_part(const char *label, double begin, double end);
 
 /* Draws the bar of the last cli_progress(), for work of several calls with one bar. False after a signal. */

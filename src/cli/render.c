@@ -12,11 +12,13 @@
 #include "cli.h"
 #include "file.h"
 #include "fileset.h"
+#include "preset_list.h"
 #include "progress.h"
 #include "render_parse.h"
 #include "scene_file.h"
 #include "series.h"
 #include "sight.h"
+#include "tiles.h"
 
 /* Removes what killed runs have left where this one writes. */
 static void tidy(const RenderOptions *options) {
@@ -51,10 +53,26 @@ static int check(Run *run) {
       (options->save_scene && !cli_file_check(options->save_scene)))
     return CLI_FAILED;
   if (render_options_given(options, OPTION_EMISSION) && !render_options_given(options, OPTION_BACKGROUND))
-    options->background[0] = options->background[1] = options->background[2] = 0;   /* radiance is shown on black */
+    options->background[0] = options->background[1] = options->background[2] = 0; /* radiance is shown on black */
+  else if (!render_options_given(options, OPTION_BACKGROUND) && render_options_decorated(options))
+    render_options_soften(options);
   if (options->source >> OPTION_BACKGROUND & 1 && render_options_floating(options)) /* on the command line, that is */
     cli_warning("--background has no effect: floating-point pixels hold the picture without background");
+  if (options->source >> OPTION_EXPOSURE & 1 && render_options_floating(options))
+    cli_warning("--exposure has no effect: floating-point pixels hold colours as they are");
   return cli_verdict(CLI_DONE);
+}
+
+static void set_background(Run *run) {
+  TetcastImageDesc *desc = &run->image_desc;
+  memcpy(desc->background, run->options.background, sizeof desc->background);
+  memcpy(desc->background_below, run->options.background, sizeof desc->background);
+  desc->background_shaded = run->options.soft;
+  for (int k = 0; k < 3 && run->options.soft; k++) {
+    const double lighter = (1 - desc->background[k]) / 1.6;
+    desc->background[k] -= lighter;
+    desc->background_below[k] += lighter;
+  }
 }
 
 /* Checks whether the picture can be written to its place and in its format. */
@@ -64,7 +82,9 @@ static int check_image(Run *run) {
     return CLI_FAILED;
   run->image_desc = run->image->image_desc_default();
   run->image_desc.pixel_type = (TetcastPixelType)run->options.pixel_type;
-  memcpy(run->image_desc.background, run->options.background, sizeof run->options.background);
+  set_background(run);
+  run->image_desc.exposure = run->options.exposure;
+  run->image_desc.linear = render_options_direct(&run->options);
   if (run->options.channels)
     run->image_desc.channel_count = render_option_channel_list(run->options.channels, run->channels);
   if (!render_options_groups(&run->options) || run->options.channels) /* else all that there are */
@@ -133,16 +153,25 @@ static int check_sight(const Run *run) {
   return cli_verdict(CLI_DONE);
 }
 
+/* Makes the picture and writes it. */
+static int make_picture(Run *run) {
+  if (render_options_given(&run->options, OPTION_TILES))
+    return tiles_perform(run);
+  int code = picture_create_frame(run, (int64_t)run->options.size[0], (int64_t)run->options.size[1]);
+  if (code == CLI_DONE)
+    code = picture_render(run);
+  if (code == CLI_DONE)
+    code = check_sight(run);
+  return code == CLI_DONE ? picture_write(run, run->options.output) : code;
+}
+
 static int write_files(Run *run) {
   const RenderOptions *options = &run->options;
   const Stage *stage = &run->stage;
-  const int code = picture_write(run, options->output);
-  if (code != CLI_DONE)
-    return code;
   if (options->save_scene && !scene_file_write(options, stage->array, &stage->camera, stage->transfer_function,
                                                stage->rows.source, stage->shown))
     return CLI_FAILED;
-  return !options->stats || cli_json_write(options->stats, stats_object(&run->stats)) ? CLI_DONE : CLI_FAILED;
+  return !options->stats || cli_json_write(options->stats, picture_stats(run)) ? CLI_DONE : CLI_FAILED;
 }
 
 static int perform(Run *run) {
@@ -157,11 +186,7 @@ static int perform(Run *run) {
   if (code == CLI_DONE)
     code = load(run);
   if (code == CLI_DONE)
-    code = picture_create_frame(run);
-  if (code == CLI_DONE)
-    code = picture_render(run);
-  if (code == CLI_DONE)
-    code = check_sight(run);
+    code = make_picture(run);
   if (code == CLI_DONE)
     code = write_files(run);
   return code;
@@ -173,7 +198,7 @@ int tetcast_cli_render(int argc, char **argv) {
   if (code < 0) {
     cli_set_quiet(run.options.quiet);
     cli_set_strict(run.options.strict);
-    code = perform(&run);
+    code = run.options.list_presets ? preset_list(&run.options) : perform(&run);
   }
   picture_await_image(&run);
   tetcast_frame_destroy(&run.frame);

@@ -15,19 +15,22 @@
 #include "cli.h"
 #include "color.h"
 #include "numbered.h"
+#include "preset_name.h"
 #include "surface_text.h"
 
 /* A picture is made by a transfer function or from coefficients. */
 #define DIRECT (BIT(OPTION_EXTINCTION) | BIT(OPTION_EMISSION) | BIT(OPTION_GROUPS))
 #define TRANSFER                                                                                                       \
-  (BIT(OPTION_ARRAY) | BIT(OPTION_TRANSFER) | BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | BIT(OPTION_OPACITY_MODEL) |     \
-   BIT(OPTION_BLEND) | BIT(OPTION_ISOSURFACE) | BIT(OPTION_SLICE) | BIT(OPTION_SURFACE) | BIT(OPTION_EDGES))
+  (BIT(OPTION_ARRAY) | BIT(OPTION_TRANSFER) | BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | BIT(OPTION_LABEL) |             \
+   BIT(OPTION_LOG) | BIT(OPTION_CENTRE) | BIT(OPTION_OPACITY_MODEL) | BIT(OPTION_BLEND) | BIT(OPTION_ISOSURFACE) |     \
+   BIT(OPTION_SLICE) | BIT(OPTION_SURFACE) | BIT(OPTION_EDGES) | BIT(OPTION_LEGEND))
 
 /* Order of the library's enumerations. */
 static const char *const opacity_models[] = {"unit-distance", "vtk-unstructured", "ospray", NULL};
 static const char *const blends[] = {"composite", "maximum", "minimum", "average", "additive", NULL};
 static const char *const shades[] = {"none", "surfaces", "volume", "all", NULL};
 static const char *const normals[] = {"smooth", "flat", NULL};
+static const char *const views[] = {"iso", "+x", "-x", "+y", "-y", "+z", "-z", NULL};
 static const char *const isas[] = {"auto", "scalar", "avx2", "avx512", NULL};
 static const char *const traversals[] = {"shell", "faces", NULL};
 static const char *const pixel_types[] = {"", "uint8", "uint16", "half", "float", "double", NULL};
@@ -46,14 +49,24 @@ const RenderRow render_table[OPTION_COUNT] = {
     [OPTION_SUBDIVIDE] = {"subdivide", KIND_INTEGERS, AT(subdivide), 1, 1, 0, TETCAST_MAX_SUBDIVISION,
                           .form = "expected a whole number from 1 to 16, or 0: as the nodes lie"},
     [OPTION_NO_DISPLACEMENT] = {"no-displacement", KIND_FLAG, AT(no_displacement), .form = "expected true or false"},
+    [OPTION_STRETCH] = {"stretch", KIND_NUMBERS, AT(stretch), 3, 3, DBL_MIN, DBL_MAX,
+                        .form = "expected three factors x,y,z above 0"},
     [OPTION_TRANSFER] = {"transfer", KIND_PATH, AT(transfer),
-                         .excludes = BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | DIRECT,
+                         .excludes = BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | BIT(OPTION_LABEL) | BIT(OPTION_LOG) |
+                                     BIT(OPTION_CENTRE) | DIRECT,
                          .form = "expected a transfer function or the path of one"},
     [OPTION_PRESET] = {"preset", KIND_TEXT, AT(preset), .excludes = BIT(OPTION_TRANSFER) | DIRECT,
-                       .form = "expected a name"},
+                       .form = "expected a name, or FILE or FILE:NAME of ParaView's"},
     [OPTION_RANGE] =
         {"range", KIND_NUMBERS, AT(range), 2, 2, -DBL_MAX, DBL_MAX, .excludes = BIT(OPTION_TRANSFER) | DIRECT,
          .form = "expected two numbers, LO not above HI, or shares of the volume as 1%,99%, or step, or series"},
+    [OPTION_LOG] = {"log", KIND_FLAG, AT(logarithmic), .excludes = BIT(OPTION_TRANSFER) | BIT(OPTION_CENTRE) | DIRECT,
+                    .form = "expected true or false"},
+    [OPTION_CENTRE] = {"centre", KIND_NUMBERS, AT(centre), 1, 1, -DBL_MAX, DBL_MAX,
+                       .excludes = BIT(OPTION_TRANSFER) | BIT(OPTION_LOG) | DIRECT, .form = "expected a number"},
+    [OPTION_LABEL] = {"label", KIND_LIST, AT(labels), .most = 256, .excludes = BIT(OPTION_TRANSFER) | DIRECT,
+                      .form =
+                          "expected NUMBER[:COLOUR][:OPACITY], a name or #rrggbb or r,g,b, and a number from 0 to 1"},
     [OPTION_OPACITY_MODEL] = {"opacity-model", KIND_CHOICE, AT(opacity_model), .names = opacity_models,
                               .excludes = DIRECT, .form = "expected unit-distance, vtk-unstructured or ospray"},
     [OPTION_EXTINCTION] = {"extinction", KIND_TEXT, AT(extinction), .excludes = TRANSFER, .only = COMMAND_RENDER,
@@ -75,6 +88,10 @@ const RenderRow render_table[OPTION_COUNT] = {
                       .form = "expected nothing, or a colour: a name, #rrggbb or r,g,b"},
     [OPTION_OUTLINE] = {"outline", KIND_OPTIONAL, AT(outline), .only = COMMAND_RENDER,
                         .form = "expected nothing, or a colour: a name, #rrggbb or r,g,b"},
+    [OPTION_LEGEND] = {"legend", KIND_OPTIONAL, AT(legend), .excludes = BIT(OPTION_BARE) | DIRECT,
+                       .only = COMMAND_RENDER, .form = "expected nothing, or the title"},
+    [OPTION_BARE] = {"bare", KIND_FLAG, AT(bare), .excludes = BIT(OPTION_LEGEND), .only = COMMAND_RENDER,
+                     .form = "expected true or false"},
     [OPTION_SHADE] = {"shade", KIND_CHOICE, AT(shade), .names = shades,
                       .form = "expected none, surfaces, volume or all"},
     [OPTION_NORMALS] = {"normals", KIND_CHOICE, AT(normals), .names = normals, .form = "expected smooth or flat"},
@@ -91,17 +108,35 @@ const RenderRow render_table[OPTION_COUNT] = {
     [OPTION_CLIP_BOX] = {"clip-box", KIND_NUMBERS, AT(clip_box), 6, 6, -DBL_MAX, DBL_MAX,
                          .form = "expected six numbers x0,x1,y0,y1,z0,z1, the first of each pair not above the second"},
     [OPTION_STOP_DEPTH] = {"stop-depth", KIND_PATH, AT(stop_depth), .only = COMMAND_RENDER, .form = "expected a path"},
-    [OPTION_EYE] = {"eye", KIND_NUMBERS, AT(eye), 3, 3, -DBL_MAX, DBL_MAX, .form = "expected three numbers x,y,z"},
+    [OPTION_EYE] = {"eye", KIND_NUMBERS, AT(eye), 3, 3, -DBL_MAX, DBL_MAX,
+                    .excludes = BIT(OPTION_VIEW) | BIT(OPTION_AZIMUTH) | BIT(OPTION_ELEVATION) | BIT(OPTION_ZOOM),
+                    .form = "expected three numbers x,y,z"},
     [OPTION_TARGET] = {"target", KIND_NUMBERS, AT(target), 3, 3, -DBL_MAX, DBL_MAX,
                        .form = "expected three numbers x,y,z"},
     [OPTION_UP] = {"up", KIND_NUMBERS, AT(up), 3, 3, -DBL_MAX, DBL_MAX,
                    .form = "expected three numbers x,y,z, not all zero"},
     [OPTION_FOVY] = {"fovy", KIND_NUMBERS, AT(fovy), 1, 1, 1e-6, 179.999999, .excludes = BIT(OPTION_ORTHO),
                      .form = "expected an angle between 0 and 180 degrees"},
-    [OPTION_ORTHO] = {"ortho", KIND_NUMBERS, AT(ortho), 1, 1, DBL_MIN, DBL_MAX, .excludes = BIT(OPTION_FOVY),
-                      .form = "expected a height above 0"},
+    [OPTION_VIEW] = {"view", KIND_CHOICE, AT(view), .names = views,
+                     .excludes = BIT(OPTION_EYE) | BIT(OPTION_AZIMUTH) | BIT(OPTION_ELEVATION),
+                     .form = "expected iso, or the direction that is looked along: +x, -x, +y, -y, +z or -z"},
+    [OPTION_AZIMUTH] = {"azimuth", KIND_NUMBERS, AT(azimuth), 1, 1, -1e6, 1e6,
+                        .excludes = BIT(OPTION_EYE) | BIT(OPTION_VIEW), .form = "expected an angle in degrees"},
+    [OPTION_ELEVATION] = {"elevation", KIND_NUMBERS, AT(elevation), 1, 1, -90, 90,
+                          .excludes = BIT(OPTION_EYE) | BIT(OPTION_VIEW),
+                          .form = "expected an angle from -90 to 90 degrees"},
+    [OPTION_ZOOM] = {"zoom", KIND_NUMBERS, AT(zoom), 1, 1, 1e-6, 1e6, .excludes = BIT(OPTION_EYE) | BIT(OPTION_ORTHO),
+                     .form = "expected a factor from 1e-6 to 1e6"},
+    [OPTION_ORTHO] = {"ortho", KIND_NUMBERS, AT(ortho), 1, 1, DBL_MIN, DBL_MAX,
+                      .excludes = BIT(OPTION_FOVY) | BIT(OPTION_ZOOM), .form = "expected a height above 0"},
+    [OPTION_ORBIT] = {"orbit", KIND_TEXT, AT(orbit), .excludes = BIT(OPTION_DOLLY), .only = COMMAND_RENDER,
+                      .form = "expected N[:DEGREES]: how many pictures, from 1 to 1000000, and an angle"},
+    [OPTION_DOLLY] = {"dolly", KIND_TEXT, AT(dolly), .excludes = BIT(OPTION_ORBIT), .only = COMMAND_RENDER,
+                      .form = "expected N[:FACTOR]: how many pictures, from 1 to 1000000, and a factor above 0"},
     [OPTION_SIZE] = {"size", KIND_INTEGERS, AT(size), 2, 2, 1, 1 << 20,
                      .form = "expected WxH: whole numbers from 1 to 1048576, no more than 2^30 pixels"},
+    [OPTION_TILES] = {"tiles", KIND_OPTIONAL, AT(tiles), .only = COMMAND_RENDER,
+                      .form = "expected nothing, or a whole number of rows from 1 to 1048576"},
     [OPTION_SAMPLES] = {"samples", KIND_INTEGERS, AT(samples), 1, 1, 1, 65536, .excludes = BIT(OPTION_ADAPTIVE),
                         .only = COMMAND_RENDER, .form = "expected a whole number from 1 to 65536"},
     [OPTION_ADAPTIVE] = {"adaptive", KIND_NUMBERS, AT(adaptive), 1, 3, 0, DBL_MAX, .excludes = BIT(OPTION_SAMPLES),
@@ -109,8 +144,11 @@ const RenderRow render_table[OPTION_COUNT] = {
                          .form = "expected EPS[,COARSE[,FINE]]: a number, 0 or above, a power of two from 1 to 64, and "
                                  "a whole number from 1 to 65536"},
     [OPTION_BACKGROUND] = {"background", KIND_NUMBERS, AT(background), 3, 4, 0, 1, .only = COMMAND_RENDER,
-                           .form = "expected r,g,b or r,g,b,a from 0 to 1, a name such as white or transparent, or "
-                                   "#rrggbb"},
+                           .form =
+                               "expected r,g,b or r,g,b,a from 0 to 1, a name such as white, transparent or soft, or "
+                               "#rrggbb"},
+    [OPTION_EXPOSURE] = {"exposure", KIND_NUMBERS, AT(exposure), 1, 1, -1000, 1000, .only = COMMAND_RENDER,
+                         .form = "expected a number of stops from -1000 to 1000"},
     [OPTION_INTEGRATOR] =
         {"integrator", KIND_TEXT, AT(integrator), .only = COMMAND_RENDER,
          .form = "expected exact, midpoint:N, trapezoid:N, gauss:N (N to 16) or table:N (N from 2 to 4096)"},
@@ -139,9 +177,27 @@ const RenderRow render_table[OPTION_COUNT] = {
     [OPTION_QUIET] = {"quiet", KIND_FLAG, AT(quiet), .form = "expected true or false"},
     [OPTION_REFINE] = {"refine", KIND_FLAG, AT(refine), .only = COMMAND_CONVERGE},
     [OPTION_NO_PLOTS] = {"no-plots", KIND_FLAG, AT(no_plots), .only = COMMAND_CONVERGE},
+    [OPTION_SHEET] = {"sheet", KIND_PATH, AT(sheet), .only = COMMAND_TRANSFER, .form = "expected a path"},
+    [OPTION_TAKE] = {"take", KIND_INTEGERS, AT(take), 1, 1, 1, 100, .only = COMMAND_TRANSFER,
+                     .form = "expected the number of a candidate"},
+    [OPTION_PLOTS] = {"plots", KIND_PATH, AT(plots), .only = COMMAND_TRANSFER, .form = "expected a path"},
 };
 
+_Static_assert(OPTION_COUNT <= 128, "sets of options are 128 bits");
+
+/* What the command transfer has of the others' options: what is read, and from where it is seen. */
+static const OptionSet of_transfer =
+    BIT(OPTION_INPUT) | BIT(OPTION_OUTPUT) | BIT(OPTION_ARRAY) | BIT(OPTION_BLOCK) | BIT(OPTION_TIME) |
+    BIT(OPTION_MERGE_TOLERANCE) | BIT(OPTION_CELL_TO_POINT) | BIT(OPTION_SUBDIVIDE) | BIT(OPTION_NO_DISPLACEMENT) |
+    BIT(OPTION_STRETCH) | BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | BIT(OPTION_LOG) | BIT(OPTION_CENTRE) |
+    BIT(OPTION_CLIP) | BIT(OPTION_CLIP_BOX) | BIT(OPTION_EYE) | BIT(OPTION_TARGET) | BIT(OPTION_UP) | BIT(OPTION_FOVY) |
+    BIT(OPTION_VIEW) | BIT(OPTION_AZIMUTH) | BIT(OPTION_ELEVATION) | BIT(OPTION_ZOOM) | BIT(OPTION_ORTHO) |
+    BIT(OPTION_SIZE) | BIT(OPTION_TRAVERSAL) | BIT(OPTION_ISA) | BIT(OPTION_THREADS) | BIT(OPTION_STRICT) |
+    BIT(OPTION_QUIET);
+
 bool render_option_of_command(OptionId id, RenderCommand command) {
+  if (command == COMMAND_TRANSFER && !render_table[id].only)
+    return of_transfer >> id & 1;
   return !render_table[id].only || render_table[id].only == command;
 }
 
@@ -150,8 +206,14 @@ RenderOptions render_options_default(RenderCommand command) {
                            .size = {1024, 768},
                            .samples = 1,
                            .background = {1, 1, 1, 1},
+                           .zoom = 1,
                            .repeat = 1,
-                           .merge_tolerance = -1};
+                           .merge_tolerance = -1,
+                           .stretch = {1, 1, 1}};
+  if (command == COMMAND_TRANSFER) {
+    options.size[0] = 288;
+    options.size[1] = 216;
+  }
   if (command == COMMAND_CONVERGE) {
     options.size[0] = 256;
     options.size[1] = 192;
@@ -179,6 +241,7 @@ void render_options_release(RenderOptions *options) {
   clear_list(&options->isosurfaces);
   clear_list(&options->slices);
   clear_list(&options->lights);
+  clear_list(&options->labels);
   for (int id = 0; id < OPTION_COUNT; id++)
     if (render_option_is_text((OptionId)id))
       free(*(char **)((char *)options + render_table[id].at));
@@ -240,13 +303,14 @@ const char *render_options_claim(RenderOptions *options, OptionId id) {
   return NULL;
 }
 
-static const char *set_preset_name(const char *name) {
+static const char *check_preset(const char *name) {
   static char reason[512];
-  size_t length = (size_t)snprintf(reason, sizeof reason, "there is no such preset; there are");
+  if (preset_name_is_file(name) || tetcast_preset_kind(name) != TETCAST_PRESET_NONE)
+    return NULL;
+  size_t length =
+      (size_t)snprintf(reason, sizeof reason, "there is no such preset, nor is it a .json or .xml; there are");
   CliGuess guess = {.word = name};
   for (int i = 0; tetcast_preset_name(i); i++) {
-    if (!strcmp(name, tetcast_preset_name(i)))
-      return NULL;
     cli_guess(&guess, tetcast_preset_name(i));
     if (length < sizeof reason)
       length += (size_t)snprintf(reason + length, sizeof reason - length, " %s", tetcast_preset_name(i));
@@ -330,6 +394,20 @@ int render_option_deep(const char *text) {
   return number >= 1 && number <= 1024 && number == floor(number) ? (int)number : 0;
 }
 
+int render_option_tiles(const char *text) {
+  double number = 0;
+  if (!*text)
+    return 0;
+  return cli_parse_number(text, &number) && number >= 1 && number <= 1 << 20 && number == floor(number) ? (int)number
+                                                                                                        : -1;
+}
+
+bool render_option_tour(OptionId id, const char *text, double numbers[2]) {
+  numbers[1] = id == OPTION_DOLLY ? 2 : 360;
+  return cli_parse_numbers(text, ':', 2, numbers) > 0 && numbers[0] >= 1 && numbers[0] <= 1e6 &&
+         numbers[0] == floor(numbers[0]) && (id == OPTION_ORBIT || numbers[1] > 0);
+}
+
 int render_options_deep(const RenderOptions *options) {
   return render_options_given(options, OPTION_DEEP) ? render_option_deep(options->deep) : 0;
 }
@@ -362,6 +440,21 @@ bool render_options_floating(const RenderOptions *options) {
          (render_option_has_extension(options->output, ".exr") || render_option_is_tiff(options->output) ||
           render_option_has_extension(options->output, ".hdr") ||
           render_option_has_extension(options->output, ".rgbe"));
+}
+
+void render_options_soften(RenderOptions *options) {
+  static const double middle[4] = {0.88, 0.905, 0.94, 1};
+  options->soft = 1;
+  memcpy(options->background, middle, sizeof middle);
+}
+
+bool render_options_decorated(const RenderOptions *options) {
+  return options->command == COMMAND_RENDER && !options->bare && !options->scene && !render_options_floating(options) &&
+         !render_options_direct(options);
+}
+
+double render_options_gain(const RenderOptions *options) {
+  return render_options_floating(options) ? 1 : exp2(options->exposure);
 }
 
 static const char *set_numbers(OptionId id, void *at, const OptionValue *value) {
@@ -398,6 +491,15 @@ static const char *set_color(OptionId id, double rgba[4], const OptionValue *val
     return reason;
   }
   memcpy(rgba, color, sizeof color);
+  return NULL;
+}
+
+/* A colour, or "soft". */
+static const char *set_background(RenderOptions *options, const OptionValue *value) {
+  options->soft = value->text && !strcmp(value->text, "soft");
+  if (!options->soft)
+    return set_color(OPTION_BACKGROUND, options->background, value);
+  render_options_soften(options);
   return NULL;
 }
 
@@ -493,7 +595,7 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
   if (id == OPTION_RANGE)
     return set_range(options, value);
   if (id == OPTION_BACKGROUND)
-    return set_color(id, at, value);
+    return set_background(options, value);
   if (id == OPTION_ADAPTIVE)
     return set_adaptive(options->adaptive, value);
   if (id == OPTION_CLIP)
@@ -520,9 +622,14 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
       return render_table[id].form;
     if ((id == OPTION_EDGES || id == OPTION_OUTLINE) && *value->text && !surfaces_parse_color(value->text, color))
       return render_table[id].form;
+    if (id == OPTION_TILES && render_option_tiles(value->text) < 0)
+      return render_table[id].form;
+    double tour[2];
+    if ((id == OPTION_ORBIT || id == OPTION_DOLLY) && !render_option_tour(id, value->text, tour))
+      return render_table[id].form;
     TetcastIntegrator integrator;
     int n;
-    const char *reason = id == OPTION_PRESET ? set_preset_name(value->text) : NULL;
+    const char *reason = id == OPTION_PRESET ? check_preset(value->text) : NULL;
     if (id == OPTION_INTEGRATOR && !render_option_integrator(value->text, &integrator, &n))
       reason = render_table[id].form;
     if (id == OPTION_CHANNELS && !render_option_channels(value->text))

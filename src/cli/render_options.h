@@ -23,9 +23,13 @@ typedef enum OptionId {
   OPTION_CELL_TO_POINT,
   OPTION_SUBDIVIDE,
   OPTION_NO_DISPLACEMENT,
+  OPTION_STRETCH,
   OPTION_TRANSFER,
   OPTION_PRESET,
   OPTION_RANGE,
+  OPTION_LABEL,
+  OPTION_LOG,
+  OPTION_CENTRE,
   OPTION_OPACITY_MODEL,
   OPTION_EXTINCTION,
   OPTION_EMISSION,
@@ -36,6 +40,8 @@ typedef enum OptionId {
   OPTION_SURFACE,
   OPTION_EDGES,
   OPTION_OUTLINE,
+  OPTION_LEGEND,
+  OPTION_BARE,
   OPTION_SHADE,
   OPTION_NORMALS,
   OPTION_MATERIAL,
@@ -49,11 +55,19 @@ typedef enum OptionId {
   OPTION_TARGET,
   OPTION_UP,
   OPTION_FOVY,
+  OPTION_VIEW,
+  OPTION_AZIMUTH,
+  OPTION_ELEVATION,
+  OPTION_ZOOM,
   OPTION_ORTHO,
+  OPTION_ORBIT,
+  OPTION_DOLLY,
   OPTION_SIZE,
+  OPTION_TILES,
   OPTION_SAMPLES,
   OPTION_ADAPTIVE,
   OPTION_BACKGROUND,
+  OPTION_EXPOSURE,
   OPTION_INTEGRATOR,
   OPTION_TOLERANCE,
   OPTION_CHANNELS,
@@ -71,10 +85,16 @@ typedef enum OptionId {
   OPTION_QUIET,
   OPTION_REFINE,
   OPTION_NO_PLOTS,
+  OPTION_SHEET,
+  OPTION_TAKE,
+  OPTION_PLOTS,
   OPTION_COUNT
 } OptionId;
 
-typedef enum RenderCommand { COMMAND_RENDER = 1, COMMAND_CONVERGE = 2 } RenderCommand;
+/* A set of options, bit 1 << OptionId for each. */
+__extension__ typedef unsigned __int128 OptionSet;
+
+typedef enum RenderCommand { COMMAND_RENDER = 1, COMMAND_CONVERGE = 2, COMMAND_TRANSFER = 4 } RenderCommand;
 
 /* The kinds of range that --range can name. */
 typedef enum RangeKind { RANGE_DEFAULT, RANGE_FIXED, RANGE_QUANTILES, RANGE_STEP, RANGE_SERIES } RangeKind;
@@ -89,23 +109,27 @@ typedef struct RenderOptions {
   RenderCommand command;
   /* NULL unless given */
   char *input, *output, *array, *block, *time, *transfer, *preset, *extinction, *emission, *integrator, *channels,
-      *surface, *edges, *outline, *deep, *stats, *scene, *save_scene, *stop_depth;
+      *surface, *edges, *outline, *legend, *deep, *stats, *scene, *save_scene, *stop_depth, *orbit, *dolly, *tiles,
+      *sheet, *plots;
   char **inputs; /* [input_count] of several files, the steps of a series; input is the first. NULL: one file */
   int input_count;
   json_t *transfer_object; /* of a scene file; instead of transfer */
   TetcastHalfSpace *clip;  /* [clip_count] */
   int clip_count, clip_capacity;
   double clip_box[6]; /* x0, x1, y0, … */
-  double range[2], eye[3], target[3], up[3], fovy, ortho, size[2], samples, background[4], tolerance, threads, repeat;
+  double stretch[3], exposure, take;
+  double range[2], centre, eye[3], target[3], up[3], fovy, azimuth, elevation, zoom, ortho, size[2], samples,
+      background[4], tolerance, threads, repeat;
   double material[4], adaptive[3]; /* epsilon, coarse, fine */
-  TextList isosurfaces, slices, lights;
+  TextList isosurfaces, slices, lights, labels;
   double merge_tolerance; /* negative unless given */
   RangeKind range_kind;   /* RANGE_FIXED: options->range; RANGE_QUANTILES: these shares of the volume */
   double subdivide, ambient_occlusion;
-  int opacity_model, blend, shade, normals, traversal, isa, pixel_type; /* values of the library's enumerations */
-  int cell_to_point, no_displacement, quiet, strict, resume, refine, no_plots, groups, shadows;
-  uint64_t given;  /* bit 1 << OptionId: has a value from command line or scene file */
-  uint64_t source; /* the same for the source being read alone */
+  int opacity_model, blend, shade, normals, view, traversal, isa, pixel_type; /* values of the library's enumerations */
+  int cell_to_point, no_displacement, quiet, strict, resume, refine, no_plots, groups, shadows, logarithmic, bare, soft;
+  int list_presets; /* instead of a picture */
+  OptionSet given;  /* those that have a value from command line or scene file */
+  OptionSet source; /* the same for the source being read alone */
 } RenderOptions;
 
 /* A value as both sources can state it. */
@@ -179,6 +203,13 @@ static inline bool render_options_surfaces_alone(const RenderOptions *options) {
   return render_options_surfaces(options) && !render_options_given(options, OPTION_TRANSFER);
 }
 
+/* Makes the background soft: a bit brighter below, and darker above, than the colour that stands for it here. */
+void render_options_soften(RenderOptions *options);
+
+/* Whether a picture that nothing was said about has a box, a legend and a soft background: one for people to look at.
+ */
+bool render_options_decorated(const RenderOptions *options);
+
 /* How many parts the rays of a deep picture have; 0: it is none. */
 int render_options_deep(const RenderOptions *options);
 
@@ -189,6 +220,12 @@ int render_option_deep(const char *text);
 static inline bool render_options_adaptive(const RenderOptions *options) {
   return render_options_given(options, OPTION_ADAPTIVE);
 }
+
+/* The number of rows that --tiles says, 0 where its text is empty; -1: it says none. */
+int render_option_tiles(const char *text);
+
+/* What --orbit or --dolly says: how many pictures, and the degrees or the factor. False: neither N nor N:AMOUNT. */
+bool render_option_tour(OptionId id, const char *text, double numbers[2]);
 
 /* The TetcastChannel bits of a list as --channels has it, 0: there is something else in it. */
 uint32_t render_option_channels(const char *text);
@@ -201,6 +238,9 @@ uint32_t render_options_channels(const RenderOptions *options);
 
 /* Whether the pixels of options->output will be floating-point, which hold no background. */
 bool render_options_floating(const RenderOptions *options);
+
+/* The factor on colours where pixels are integers; else 1. */
+double render_options_gain(const RenderOptions *options);
 
 /* Sets the input, or several as the steps of a series: their names differ in one number, by which they are sorted.
  * False: they are no such series, and nothing is set. */
@@ -226,7 +266,7 @@ typedef enum OptionKind {
   KIND_OPTIONAL
 } OptionKind;
 
-#define BIT(id)    (UINT64_C(1) << (id))
+#define BIT(id)    ((OptionSet)1 << (id))
 #define AT(member) offsetof(RenderOptions, member)
 
 typedef struct RenderRow {
@@ -236,8 +276,8 @@ typedef struct RenderRow {
   int least, most;          /* how many numbers */
   double low, high;         /* bounds of each */
   const char *const *names; /* of a choice */
-  uint64_t excludes;
-  RenderCommand only; /* of this command alone, 0: of both */
+  OptionSet excludes;
+  RenderCommand only; /* of this command alone, 0: of render, converge and, if it is among its own, transfer */
   const char *form;   /* what is expected */
 } RenderRow;
 

@@ -15,15 +15,17 @@
 #include "completion.h"
 #include "scene_file.h"
 #include "surface_text.h"
+#include "tiles.h"
+#include "tour.h"
 #include "view.h"
 
 static const char *command_name(const RenderOptions *options) {
-  return options->command == COMMAND_RENDER ? "render" : "converge";
+  return options->command == COMMAND_RENDER ? "render" : options->command == COMMAND_CONVERGE ? "converge" : "transfer";
 }
 
 /* What of the light has nothing to fall on, or doesn't go with the rest. NULL: nothing. */
 static const char *find_darkness(const RenderOptions *options) {
-  static const uint64_t light = BIT(OPTION_SHADE) | BIT(OPTION_NORMALS) | BIT(OPTION_MATERIAL) | BIT(OPTION_LIGHT);
+  static const OptionSet light = BIT(OPTION_SHADE) | BIT(OPTION_NORMALS) | BIT(OPTION_MATERIAL) | BIT(OPTION_LIGHT);
   if (!render_options_surfaces(options) && !render_options_lit(options)) {
     if (options->given & light)
       return "--shade, --normals, --material, --light: need --isosurface or --surface, on which the light falls, or "
@@ -65,12 +67,6 @@ static const char *find_mixture(const RenderOptions *options) {
     return "--adaptive: needs --blend composite";
   if (render_options_given(options, OPTION_EDGES) && !render_options_given(options, OPTION_SURFACE))
     return "--edges: needs --surface, on which they are drawn";
-  if (render_options_given(options, OPTION_OUTLINE) &&
-      (channels & TETCAST_CHANNEL_VALUE ||
-       (render_options_blend(options) == TETCAST_BLEND_ADDITIVE && !render_options_given(options, OPTION_TRANSFER) &&
-        render_options_range(options) != RANGE_FIXED)))
-    return "--outline: not possible with --channels value, and with --blend additive only with --range LO,HI or "
-           "--transfer";
   if (render_options_surfaces(options)) {
     if (render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
       return "--isosurface, --slice, --surface: need --blend composite";
@@ -80,6 +76,8 @@ static const char *find_mixture(const RenderOptions *options) {
       return "--channels error: not possible with --isosurface, --slice or --surface; where a surface is seen edge-on, "
              "rounding decides whether a ray meets it";
   }
+  if (options->logarithmic && render_options_range(options) == RANGE_FIXED && !(options->range[0] > 0))
+    return "--log: --range must be above 0, where values have a logarithm";
   const char *light = find_darkness(options);
   if (light)
     return light;
@@ -146,6 +144,10 @@ static char *find_fault(const RenderOptions *options) {
     view = find_mixture(options);
   if (!view)
     view = find_flat(options);
+  if (!view)
+    view = tour_fault(options);
+  if (!view)
+    view = tiles_fault(options);
   if (view)
     return cli_duplicate(view);
   TetcastIntegrator integrator = TETCAST_INTEGRATOR_EXACT;
@@ -171,6 +173,10 @@ static char *find_fault(const RenderOptions *options) {
 
 static int set_from_text(RenderOptions *options, OptionId id, const char *text) {
   OptionValue value = {.text = text};
+  if (id == OPTION_PRESET && options->command == COMMAND_RENDER && !strcmp(text, "list")) {
+    options->list_presets = true;
+    return -1;
+  }
   if (render_table[id].kind == KIND_NUMBERS || render_table[id].kind == KIND_INTEGERS) {
     value.count = cli_parse_numbers(text, id == OPTION_SIZE ? 'x' : ',', render_table[id].most, value.numbers);
     if (value.count > 0 || (id != OPTION_RANGE && id != OPTION_BACKGROUND)) /* which may be words */
@@ -229,10 +235,11 @@ static void list_words(RenderCommand command, struct option words[OPTION_COUNT +
 static const char *take_optional(OptionId id, int argc, char **argv) {
   TetcastBoundary boundary;
   double color[3];
-  if (optind >= argc)
+  if (optind >= argc || id == OPTION_LEGEND) /* a title could be any word */
     return "";
   const bool fits = id == OPTION_SURFACE ? surfaces_parse_boundary(argv[optind], &boundary)
                     : id == OPTION_DEEP  ? *argv[optind] && render_option_deep(argv[optind])
+                    : id == OPTION_TILES ? render_option_tiles(argv[optind]) > 0
                                          : surfaces_parse_color(argv[optind], color);
   return fits ? argv[optind++] : "";
 }
@@ -248,7 +255,10 @@ static int parse_words(RenderOptions *options, int argc, char **argv, bool scene
     if (code == '?' || code == ':')
       return cli_bad_option(command_name(options), code, argc, argv, words);
     if (code == WORD_HELP) {
-      fputs(options->command == COMMAND_RENDER ? render_help : converge_help, stdout);
+      fputs(options->command == COMMAND_RENDER     ? render_help
+            : options->command == COMMAND_CONVERGE ? converge_help
+                                                   : transfer_help,
+            stdout);
       return cli_finish_output();
     }
     const OptionId id = code == WORD_OUTPUT ? OPTION_OUTPUT : (OptionId)(code - WORD_OPTION);
@@ -295,6 +305,14 @@ static void take_scene(RenderOptions *options) {
 
 /* What of the command line is missing or has no use. -1: nothing, else the exit code. */
 static int check_use(const RenderOptions *options) {
+  if (options->command == COMMAND_TRANSFER && !options->output)
+    return cli_usage_error("transfer", "no file for the transfer function given: -o FUNCTION.json");
+  if (options->command == COMMAND_TRANSFER && options->time && !strcmp(options->time, "all"))
+    return cli_usage_error("transfer", "--time all: expected a single step");
+  if (options->command == COMMAND_TRANSFER && options->inputs)
+    return cli_usage_error("transfer", "more than one input: '%s' and '%s'", options->inputs[0], options->inputs[1]);
+  if (options->command == COMMAND_TRANSFER && options->range_kind == RANGE_SERIES)
+    return cli_usage_error("transfer", "--range series: expected two numbers, LO not above HI, or shares");
   if (options->command == COMMAND_CONVERGE && !options->output)
     return cli_usage_error("converge", "no folder for the report given: -o REPORTDIR");
   if (options->command == COMMAND_CONVERGE && options->time && !strcmp(options->time, "all"))
@@ -320,8 +338,8 @@ static int check_use(const RenderOptions *options) {
     return result;
   if (!options->refine)
     return cli_usage_error(command_name(options), "no input given");
-  const uint64_t used = BIT(OPTION_OUTPUT) | BIT(OPTION_THREADS) | BIT(OPTION_QUIET) | BIT(OPTION_STRICT) |
-                        BIT(OPTION_REFINE) | BIT(OPTION_NO_PLOTS);
+  const OptionSet used = BIT(OPTION_OUTPUT) | BIT(OPTION_THREADS) | BIT(OPTION_QUIET) | BIT(OPTION_STRICT) |
+                         BIT(OPTION_REFINE) | BIT(OPTION_NO_PLOTS);
   for (int id = 0; id < OPTION_COUNT; id++)
     if (options->given & ~used & BIT(id))
       return cli_usage_error("converge", "--%s needs an input: --refine has a scene of its own", render_table[id].name);
@@ -344,6 +362,8 @@ int render_options_parse(RenderOptions *options, int argc, char **argv) {
   options->source = 0;
   if (result < 0)
     result = parse_words(options, argc, argv, false);
+  if (result < 0 && options->list_presets)
+    return result;
   if (result < 0)
     result = check_use(options);
   char *fault = result < 0 ? find_fault(options) : NULL;
@@ -396,7 +416,7 @@ static int complete(RenderCommand command, CompletionOption list[COMPLETION_OPTI
   list_words(command, words, ids);
   const int count = completion_of_words(words, list);
   for (int i = 0; i + 1 < count; i++) { /* but for the last, --help */
-    if (render_table[ids[i]].kind == KIND_PATH)
+    if (render_table[ids[i]].kind == KIND_PATH || ids[i] == OPTION_PRESET)
       list[i].kind = COMPLETION_PATH;
     list[i].words = words_of(ids[i]);
   }
@@ -405,6 +425,10 @@ static int complete(RenderCommand command, CompletionOption list[COMPLETION_OPTI
 
 int completion_of_render(CompletionOption list[COMPLETION_OPTIONS]) {
   return complete(COMMAND_RENDER, list);
+}
+
+int completion_of_transfer(CompletionOption list[COMPLETION_OPTIONS]) {
+  return complete(COMMAND_TRANSFER, list);
 }
 
 int completion_of_converge(CompletionOption list[COMPLETION_OPTIONS]) {

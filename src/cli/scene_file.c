@@ -11,6 +11,7 @@
 #include "clip.h"
 #include "file.h"
 #include "json.h"
+#include "preset_name.h"
 
 /* Several files are the steps of a series. NULL, or what is wrong. */
 static const char *set_inputs(RenderOptions *options, const json_t *list) {
@@ -35,7 +36,8 @@ static const char *set_inputs(RenderOptions *options, const json_t *list) {
 static bool set_value(RenderOptions *options, OptionId id, const char *key, const json_t *json) {
   OptionValue value = {.text = json_string_value(json)};
   char *path = NULL;
-  if (value.text && *value.text && render_option_is_path(id)) {
+  const bool is_file = value.text && id == OPTION_PRESET && preset_name_is_file(value.text);
+  if (value.text && *value.text && (is_file || render_option_is_path(id))) {
     char *folder = cli_path_folder(options->scene);
     value.text = path = cli_path_join(folder, value.text);
     free(folder);
@@ -146,7 +148,7 @@ static bool begins_as_object(const char *path) {
 char *scene_file_mistaken(const char *path) {
   json_t *root = begins_as_object(path) ? json_load_file(path, 0, NULL) : NULL;
   char *result = NULL;
-  if (json_object_get(root, "color") || json_object_get(root, "rows"))
+  if (json_object_get(root, "color") || json_object_get(root, "rows") || json_object_get(root, "gaussians"))
     result = cli_print("'%s' is a transfer function, not a mesh: render takes it by --transfer %s", path, path);
   else if (json_object_get(root, "input") || json_object_get(root, "camera") || json_object_get(root, "transfer"))
     result = cli_print("'%s' is a scene, not a mesh: render takes it by --scene %s", path, path);
@@ -161,7 +163,7 @@ static json_t *knots(const double *values, int64_t count, int width) {
   return array;
 }
 
-static json_t *transfer_object(const TetcastTransferFunction *transfer_function) {
+json_t *scene_file_transfer(const TetcastTransferFunction *transfer_function) {
   int64_t count;
   json_t *object = json_object();
   const double *color = tetcast_transfer_function_color(transfer_function, &count);
@@ -199,6 +201,21 @@ static json_t *relative_path(const RenderOptions *options, const char *path) {
   return text;
 }
 
+/* The name of the preset, or FILE or FILE:NAME from the scene's folder; NULL: it is not UTF-8. */
+static json_t *preset_value(const RenderOptions *options) {
+  const char *preset = render_options_preset(options);
+  if (!preset_name_is_file(preset))
+    return json_string(preset);
+  char *path = preset_name_path(preset), *folder = cli_path_folder(options->save_scene);
+  char *relative = cli_path_relative(folder, path), *text = cli_print("%s%s", relative, preset + strlen(path));
+  json_t *value = json_string(text);
+  free(text);
+  free(relative);
+  free(folder);
+  free(path);
+  return value;
+}
+
 /* The path of the input, or of each of several, from the scene's folder; NULL: one is not UTF-8. */
 static json_t *input_value(const RenderOptions *options) {
   char *folder = cli_path_folder(options->save_scene);
@@ -227,8 +244,10 @@ static json_t *text_array(const TextList *list) {
 }
 
 static void write_surfaces(json_t *scene, const RenderOptions *options) {
-  if (render_options_given(options, OPTION_OUTLINE))
-    json_object_set_new(scene, "outline", json_string(options->outline));
+  if (render_options_given(options, OPTION_OUTLINE) || render_options_decorated(options))
+    json_object_set_new(scene, "outline", json_string(options->outline ? options->outline : ""));
+  if (render_options_given(options, OPTION_LEGEND) || render_options_decorated(options))
+    json_object_set_new(scene, "legend", json_string(options->legend ? options->legend : ""));
   if (options->isosurfaces.count > 0)
     json_object_set_new(scene, "isosurface", text_array(&options->isosurfaces));
   if (options->slices.count > 0)
@@ -243,7 +262,7 @@ static void write_surfaces(json_t *scene, const RenderOptions *options) {
     json_object_set_new(scene, "normals", json_string(render_option_choice(OPTION_NORMALS, options->normals)));
   if (render_options_given(options, OPTION_MATERIAL))
     json_object_set_new(scene, "material", cli_json_array(options->material, 4));
-  if (options->lights.count > 0)
+  if (options->lights.count > 0) /* labels are in the transfer function */
     json_object_set_new(scene, "light", text_array(&options->lights));
   if (options->shadows)
     json_object_set_new(scene, "shadows", json_true());
@@ -275,8 +294,12 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
     json_object_set_new(scene, "cell_to_point", json_true());
   if (options->no_displacement)
     json_object_set_new(scene, "no_displacement", json_true());
+  if (render_options_given(options, OPTION_STRETCH))
+    json_object_set_new(scene, "stretch", cli_json_array(options->stretch, 3));
   if (options->subdivide > 0)
     json_object_set_new(scene, "subdivide", json_integer((json_int_t)options->subdivide));
+  if (render_options_surfaces_alone(options) || !(rows || transfer_function || render_options_direct(options)))
+    failed |= json_object_set_new(scene, "preset", preset_value(options));
   if (failed) {
     cli_error("cannot write '%s': the name of the input, the output, another file, the array or the block is not UTF-8",
               options->save_scene);
@@ -284,14 +307,12 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
     return false;
   }
   if (render_options_surfaces_alone(options)) {
-    json_object_set_new(scene, "preset", json_string(render_options_preset(options)));
     json_object_set_new(scene, "range", range ? cli_json_array(range, 2) : json_string("step"));
   } else if (rows) {
     json_object_set_new(scene, "transfer", json_deep_copy(rows));
   } else if (transfer_function) {
-    json_object_set_new(scene, "transfer", transfer_object(transfer_function));
+    json_object_set_new(scene, "transfer", scene_file_transfer(transfer_function));
   } else if (!render_options_direct(options)) {
-    json_object_set_new(scene, "preset", json_string(render_options_preset(options)));
     json_object_set_new(scene, "range", json_string("step"));
   }
   if (render_options_given(options, OPTION_GROUPS))
@@ -301,16 +322,25 @@ bool scene_file_write(const RenderOptions *options, const char *array, const Tet
   write_surfaces(scene, options);
   clip_write(options, scene);
   json_object_set_new(scene, "camera", camera_object(camera));
+  if (render_options_given(options, OPTION_ORBIT))
+    json_object_set_new(scene, "orbit", json_string(options->orbit));
+  if (render_options_given(options, OPTION_DOLLY))
+    json_object_set_new(scene, "dolly", json_string(options->dolly));
   json_object_set_new(scene, "size", size_array(options->size));
   if (render_options_adaptive(options))
     json_object_set_new(scene, "adaptive", cli_json_array(options->adaptive, 3));
   else
     json_object_set_new(scene, "samples", json_integer((json_int_t)options->samples));
-  json_object_set_new(scene, "background", cli_json_array(options->background, 4));
+  json_object_set_new(scene, "background",
+                      options->soft ? json_string("soft") : cli_json_array(options->background, 4));
+  if (render_options_given(options, OPTION_EXPOSURE))
+    json_object_set_new(scene, "exposure", json_real(options->exposure));
   if (options->integrator)
     json_object_set_new(scene, "integrator", json_string(options->integrator));
   if (options->tolerance > 0)
     json_object_set_new(scene, "tolerance", json_real(options->tolerance));
+  if (render_options_given(options, OPTION_TILES))
+    json_object_set_new(scene, "tiles", json_string(options->tiles));
   if (render_options_deep(options))
     json_object_set_new(scene, "deep", json_string(options->deep));
   if (options->channels)

@@ -22,4 +22,7 @@ char *scene_file_mistaken(const char *path);
 bool scene_file_write(const RenderOptions *options, const char *array, const TetcastCamera *camera,
                       const TetcastTransferFunction *transfer_function, const json_t *rows, const double range[2]);
 
+/* A transfer function as its files and scene files have it, of one dimension. */
+json_t *scene_file_transfer(const TetcastTransferFunction *transfer_function);
+
 #endif

@@ -15,12 +15,18 @@
 #include "progress.h"
 #include "scene_file.h"
 #include "sight.h"
+#include "tour.h"
+#include "writer.h"
 
 typedef struct Series {
   Run *run;
+  Tour tour;          /* of frames of one step, which then are counted in place of steps */
   int64_t count;      /* the number of steps in the file */
   int64_t begin, end; /* the steps to be rendered */
-  double *times;      /* [count]: the time of each step; NULL if the file has none */
+  int64_t todo, made; /* how many pictures there are to make, and how many of these are made */
+  Writer writer;
+  json_t *written; /* the entry of the picture that the writer writes */
+  double *times;   /* [count]: the time of each step; NULL if the file has none */
   double range[2];
   int64_t densest; /* the step whose values are the largest on average */
   json_t *entries; /* the steps' entries in the statistics */
@@ -65,6 +71,8 @@ static bool has_number(const RenderOptions *options) {
 }
 
 static bool is_all(const RenderOptions *options) {
+  if (tour_of(options).count > 0)
+    return true;
   return options->time ? !strcmp(options->time, "all") : has_number(options) || options->inputs;
 }
 
@@ -82,7 +90,8 @@ static char *name_of(const RenderOptions *options, int64_t step) {
     return cli_print("%.*s%0*lld%s", (int)at, output, width, (long long)step, output + at + length);
   if (!is_all(options))
     return cli_duplicate(output);
-  if (options->inputs && !render_options_given(options, OPTION_OUTPUT)) /* which have numbers already */
+  if (options->inputs && !render_options_given(options, OPTION_OUTPUT) &&
+      tour_of(options).count == 0) /* which have numbers already */
     return picture_default_output(options->inputs[step]);
   const char *dot = strrchr(cli_path_name(output), '.');
   const int stem = (int)(dot ? (size_t)(dot - output) : strlen(output));
@@ -111,10 +120,10 @@ static void let_go(Series *series) {
 static int load(Series *series, int64_t step) {
   Stage *stage = &series->run->stage;
   const RenderOptions *options = &series->run->options;
-  if (series->loaded == step)
+  if (series->loaded == step || (series->tour.count > 0 && series->loaded >= 0))
     return CLI_DONE;
   let_go(series);
-  int code = stage_read_step(stage, options, step);
+  int code = stage_read_step(stage, options, series->tour.count > 0 ? stage->step : step);
   if (code != CLI_DONE)
     return code;
   series->held = true;
@@ -154,7 +163,11 @@ static int find_steps(Series *series) {
     cli_vtk()->dataset_time(stage->dataset, i, &series->times[i]);
   if (series->count == 0)
     series->count = 1;
-  if (options->inputs) { /* each may know of steps of its own, of which its first counts */
+  if (series->tour.count > 0) {
+    free(series->times);
+    series->times = NULL;
+    series->count = series->tour.count;
+  } else if (options->inputs) { /* each may know of steps of its own, of which its first counts */
     free(series->times);
     series->times = NULL;
     series->count = options->input_count;
@@ -199,9 +212,17 @@ static int find_scene(Series *series) {
   const RenderOptions *options = &series->run->options;
   const RangeKind kind = render_options_range(options);
   int code = CLI_DONE;
+  if (series->tour.count > 0) {
+    code = load(series, 0);
+    if (code == CLI_DONE)
+      code = stage_shade(stage, options, stage->range);
+    series->camera = stage->camera;
+    return code;
+  }
   if (!stage->transfer_function && kind != RANGE_STEP && !render_options_direct(options)) {
     if (kind != RANGE_FIXED)
       code = find_range(series);
+    stage->whole = kind != RANGE_FIXED ? series->range : NULL;
     if (code == CLI_DONE)
       code = load(series, series->densest);
     if (code == CLI_DONE)
@@ -217,12 +238,13 @@ static int find_scene(Series *series) {
 
 static json_t *entry_of(const Series *series, int64_t step, const char *path, bool kept) {
   json_t *entry = json_object();
-  json_object_set_new(entry, "step", json_integer(step));
-  json_object_set_new(entry, "time", series->times ? json_real(series->times[step]) : json_null());
+  json_object_set_new(entry, series->tour.count > 0 ? "frame" : "step", json_integer(step));
+  if (series->tour.count == 0)
+    json_object_set_new(entry, "time", series->times ? json_real(series->times[step]) : json_null());
   json_object_set_new(entry, "output", cli_json_text(path));
   json_object_set_new(entry, "kept", json_boolean(kept));
   if (!kept)
-    json_object_update_new(entry, stats_object(&series->run->stats));
+    json_object_update_new(entry, picture_stats(series->run));
   return entry;
 }
 
@@ -265,19 +287,38 @@ static int check_former(Series *series, const char *path) {
   return code;
 }
 
+/* Waits until the picture before is written. */
+static int finish_writing(Series *series) {
+  const int code = writer_end(&series->writer);
+  if (series->written)
+    json_object_set_new(series->written, "write_seconds", json_real(series->writer.seconds));
+  series->written = NULL;
+  return code;
+}
+
+/* What a step needs before it is rendered; frames of a tour have it all, but for the camera. */
+static int prepare_step(Series *series, int64_t step) {
+  const RenderOptions *options = &series->run->options;
+  Stage *stage = &series->run->stage;
+  if (series->tour.count > 0) {
+    stage->camera = tour_camera(&series->tour, &series->camera, step);
+    return CLI_DONE;
+  }
+  if (render_options_range(options) == RANGE_STEP)
+    tetcast_transfer_function_destroy(&stage->transfer_function);
+  const int code = load(series, step);
+  stage->camera = series->camera;
+  return code == CLI_DONE ? stage_shade(stage, options, stage->range) : code;
+}
+
 static int render_step(Series *series, int64_t step, const char *path, bool kept) {
   Run *run = series->run;
-  Stage *stage = &run->stage;
-  const double steps = (double)(series->end - series->begin), done = (double)(step - series->begin) / steps;
-  show_step(series, "step", step);
-  cli_progress_part(series->label, done, done + 0.3 / steps);
-  int code = load(series, step);
-  stage->camera = series->camera;
-  if (render_options_range(&run->options) == RANGE_STEP)
-    tetcast_transfer_function_destroy(&stage->transfer_function);
-  if (code == CLI_DONE)
-    code = stage_shade(stage, &run->options, stage->range);
-  cli_progress_part(series->label, done + 0.3 / steps, done + 1 / steps);
+  const double steps = (double)series->todo, done = (double)series->made++ / steps;
+  const double prepared = series->tour.count > 0 ? done : done + 0.3 / steps;
+  show_step(series, series->tour.count > 0 ? "frame" : "step", step);
+  cli_progress_part(series->label, done, prepared);
+  int code = prepare_step(series, step);
+  cli_progress_part(series->label, prepared, done + 1 / steps);
   if (code == CLI_DONE)
     code = picture_render(run);
   if (code == CLI_DONE && !series->shown) { /* a single step may well be empty */
@@ -288,8 +329,12 @@ static int render_step(Series *series, int64_t step, const char *path, bool kept
     else
       series->fault = fault;
   }
+  if (code == CLI_DONE && kept)
+    return check_former(series, path);
   if (code == CLI_DONE)
-    code = kept ? check_former(series, path) : picture_write(run, path);
+    code = finish_writing(series);
+  if (code == CLI_DONE)
+    code = writer_begin(&series->writer, run, path);
   return code;
 }
 
@@ -308,8 +353,11 @@ static int check_kept(Series *series) {
   for (int64_t i = series->begin; i < series->end; i++)
     if (size_kept(series, i) > size_kept(series, largest))
       largest = i;
+  for (int64_t i = series->begin; i < series->end; i++)
+    series->todo += size_kept(series, i) == 0;
   if (size_kept(series, largest) == 0)
     return CLI_DONE;
+  series->todo++;
   char *path = name_of(&series->run->options, largest);
   const int code = render_step(series, largest, path, true);
   free(path);
@@ -324,15 +372,19 @@ static int render_steps(Series *series) {
     series->shown = series->shown || kept;
     if (!kept)
       code = render_step(series, i, path, false);
-    json_array_append_new(series->entries, entry_of(series, i, path, kept));
+    json_t *entry = entry_of(series, i, path, kept);
+    json_array_append_new(series->entries, entry);
+    series->written = kept ? series->written : entry;
     free(path);
     if (cli_interrupted())
       code = CLI_FAILED;
   }
+  const int last = finish_writing(series);
+  code = code == CLI_DONE ? last : code;
   cli_progress_clear();
   cli_progress_part(NULL, 0, 1);
   if (code == CLI_DONE && !series->shown && series->fault) {
-    cli_warning("of all steps: %s", series->fault);
+    cli_warning("of all %s: %s", series->tour.count > 0 ? "frames" : "steps", series->fault);
     code = cli_verdict(code);
   }
   return code;
@@ -349,24 +401,25 @@ static int write_files(const Series *series) {
   if (!options->stats)
     return CLI_DONE;
   json_t *root = json_object();
-  json_object_set(root, "steps", series->entries);
+  json_object_set(root, series->tour.count > 0 ? "frames" : "steps", series->entries);
   return cli_json_write(options->stats, root) ? CLI_DONE : CLI_FAILED;
 }
 
 int series_perform(Run *run) {
-  Series series = {.run = run, .loaded = -1, .entries = json_array()};
-  run->stage.of_series = true;
+  Series series = {.run = run, .tour = tour_of(&run->options), .loaded = -1, .entries = json_array()};
+  run->stage.of_series = series.tour.count == 0;
   int code = find_steps(&series);
   picture_await_image(run);
   if (code == CLI_DONE)
     code = find_scene(&series);
   if (code == CLI_DONE)
-    code = picture_create_frame(run);
+    code = picture_create_frame(run, (int64_t)run->options.size[0], (int64_t)run->options.size[1]);
   if (code == CLI_DONE)
     code = render_steps(&series);
   if (code == CLI_DONE)
     code = write_files(&series);
   cli_set_place(NULL);
+  writer_release(&series.writer);
   json_decref(series.entries);
   free(series.times);
   free(series.fault);

@@ -41,7 +41,7 @@ typedef struct Look {
 static Look look_at(const Run *run) {
   const TetcastFrame *frame = run->frame;
   const bool floating = render_options_floating(&run->options);
-  const double *background = run->options.background;
+  const double *background = run->options.background, gain = render_options_gain(&run->options);
   const int64_t count = tetcast_frame_width(frame) * tetcast_frame_height(frame);
   Look look = {0};
   for (int64_t i = 0; i < count && !(look.seen && look.translucent); i++) {
@@ -51,7 +51,7 @@ static Look look_at(const Run *run) {
     look.translucent = look.translucent || (rgba[3] >= visible && rgba[3] < opaque);
     double change = floating ? rgba[3] : rgba[3] * (1 - background[3]);
     for (int k = 0; k < 3; k++) {
-      change = fmax(change, fabs(floating ? rgba[k] : rgba[k] - rgba[3] * background[3] * background[k]));
+      change = fmax(change, fabs(floating ? rgba[k] : rgba[k] * gain - rgba[3] * background[3] * background[k]));
       look.most_color = fmax(look.most_color, fabs(rgba[k]));
     }
     look.seen = look.seen || change >= visible || (rgba[3] >= visible && change >= visible / 2);

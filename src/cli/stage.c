@@ -7,6 +7,9 @@
 
 #include "cli.h"
 #include "clip.h"
+#include "json.h"
+#include "preset_file.h"
+#include "preset_name.h"
 #include "progress.h"
 #include "surfaces.h"
 #include "view.h"
@@ -23,8 +26,14 @@ int stage_begin(Stage *stage, const RenderOptions *options) {
       cli_error("--transfer: one with rows is for render only, as the integrators that are compared know none");
       return CLI_FAILED;
     }
-  } else if (render_options_given(options, OPTION_OPACITY_MODEL)) {
+    return cli_verdict(CLI_DONE);
+  }
+  if (render_options_given(options, OPTION_OPACITY_MODEL))
     cli_warning("a preset states extinction: --opacity-model has no effect");
+  if (!render_options_direct(options) && preset_name_is_file(render_options_preset(options))) {
+    stage->preset = preset_file_load(stage->context, options->preset);
+    if (!stage->preset)
+      return CLI_FAILED;
   }
   return cli_verdict(CLI_DONE);
 }
@@ -96,6 +105,14 @@ static char *guess_array(const TetcastDataset *dataset, const char *selector) {
   return text;
 }
 
+/* Whether numbers of materials would be drawn as such: unless something is said that takes them for quantities. */
+static bool may_be_labels(const RenderOptions *options) {
+  return !render_options_given(options, OPTION_TRANSFER) && !render_options_given(options, OPTION_RANGE) &&
+         !render_options_given(options, OPTION_LOG) && !render_options_given(options, OPTION_CENTRE) &&
+         !render_options_given(options, OPTION_PRESET) && !options->cell_to_point &&
+         !render_options_surfaces(options) && render_options_blend(options) == TETCAST_BLEND_COMPOSITE;
+}
+
 /* The dataset and its field or coefficients; `step` NULL: the one that the options name. */
 static int read_field(Stage *stage, const RenderOptions *options, const int64_t *step) {
   const double start = cli_seconds();
@@ -106,6 +123,7 @@ static int read_field(Stage *stage, const RenderOptions *options, const int64_t 
   desc.subdivision = (int)options->subdivide;
   desc.cell_to_point = options->cell_to_point;
   desc.no_displacement = options->no_displacement;
+  memcpy(desc.stretch, options->stretch, sizeof desc.stretch);
   desc.only = stage->rows.second ? NULL : only_array(stage, options);
   const char *path = options->input;
   int64_t file = 0;
@@ -142,6 +160,8 @@ static int read_field(Stage *stage, const RenderOptions *options, const int64_t 
       stage->array = cli_duplicate(array);
       if (!options->array)
         tell_choice(stage);
+      if (!label && may_be_labels(options))
+        stage->uniform = matter_is_label(stage->dataset, stage->array, stage->field);
     }
   }
   if (status == TETCAST_OK && stage->rows.second) {
@@ -245,6 +265,110 @@ static TetcastStatus create_volume(Stage *stage, const RenderOptions *options) {
   return status;
 }
 
+/* Whether the transfer function is found from the distribution of values. */
+static bool is_designed(const Stage *stage, const RenderOptions *options) {
+  int64_t knots = 2;
+  double range[2] = {0, 1};
+  if (stage->field && !stage->whole)
+    tetcast_field_range(stage->field, range, NULL);
+  if (range[0] == range[1]) /* there is nothing to tell apart */
+    return false;
+  if (stage->preset) /* a file's may state opacities, or just colours */
+    tetcast_transfer_function_extinction(stage->preset, &knots);
+  if (render_options_direct(options) || stage->transfer_function || stage->uniform || knots > 2 ||
+      render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
+    return false;
+  const RangeKind kind = render_options_range(options);
+  return (kind != RANGE_FIXED && kind != RANGE_QUANTILES) || options->logarithmic ||
+         render_options_given(options, OPTION_CENTRE);
+}
+
+/* Whether the values have a logarithm, some of them at least. */
+static bool check_logarithm(const Stage *stage) {
+  double range[2];
+  tetcast_field_range(stage->field, range, NULL);
+  if (stage->whole)
+    memcpy(range, stage->whole, sizeof range);
+  if (!(range[1] > 0))
+    cli_error("--log: array %s has values from %g to %g, and only those above 0 have a logarithm", stage->array,
+              range[0], range[1]);
+  else if (range[0] < 0)
+    cli_warning("--log: array %s has values down to %g, which have no logarithm: drawn as the least that has one",
+                stage->array, range[0]);
+  return range[1] > 0;
+}
+
+DesignDesc stage_design_desc(const Stage *stage, const RenderOptions *options) {
+  const RangeKind kind = render_options_range(options);
+  return (DesignDesc){.range = kind == RANGE_FIXED       ? options->range
+                               : kind == RANGE_QUANTILES ? stage->quantiles
+                                                         : NULL,
+                      .whole = stage->whole,
+                      .logarithmic = options->logarithmic,
+                      .diverging = !stage->preset &&
+                                   tetcast_preset_kind(render_options_preset(options)) == TETCAST_PRESET_DIVERGING,
+                      .center = render_options_given(options, OPTION_CENTRE) ? &options->centre : NULL};
+}
+
+/* Finds the transfer function but for its colours, while the field is there. */
+static TetcastStatus find_design(Stage *stage, const RenderOptions *options) {
+  if (options->logarithmic && render_options_range(options) != RANGE_FIXED && !check_logarithm(stage))
+    return TETCAST_ERROR_DATA;
+  if (!is_designed(stage, options))
+    return TETCAST_OK;
+  const DesignDesc desc = stage_design_desc(stage, options);
+  stage->designed = true;
+  return design_find(stage->context, stage->mesh, stage->field, &desc, &stage->design);
+}
+
+/* The colours of a design over [0, 1]: of two sides where values have two. */
+static TetcastStatus create_map(const Stage *stage, const RenderOptions *options, const Design *design,
+                                TetcastTransferFunction **map) {
+  const bool diverging = design->map.diverging && !render_options_given(options, OPTION_PRESET);
+  return tetcast_transfer_function_create_preset(stage->context,
+                                                 diverging ? "coolwarm" : render_options_preset(options), 0, 1, 1, map);
+}
+
+TetcastStatus stage_shade_design(const Stage *stage, const RenderOptions *options, const Design *design,
+                                 const char *preset, TetcastTransferFunction **transfer_function) {
+  const RenderOptions nothing = render_options_default(COMMAND_RENDER);
+  TetcastCamera first;
+  TetcastTransferFunction *map = NULL;
+  view_complete(&nothing, stage->info.bounds, &first);
+  TetcastStatus status = TETCAST_OK;
+  if (preset)
+    status = tetcast_transfer_function_create_preset(stage->context, preset, 0, 1, 1, &map);
+  else if (!stage->preset)
+    status = create_map(stage, options, design, &map);
+  if (status == TETCAST_OK)
+    status = design_shade(stage->context, stage->scene, design, &first, map ? map : stage->preset, transfer_function);
+  tetcast_transfer_function_destroy(&map);
+  return status;
+}
+
+TetcastStatus stage_preset(const Stage *stage, const RenderOptions *options, const double range[2],
+                           TetcastTransferFunction **transfer_function) {
+  return stage->preset
+             ? tetcast_scene_fit_transfer_function(stage->scene, stage->preset, range[0], range[1], transfer_function)
+             : tetcast_scene_create_preset(stage->scene, render_options_preset(options), range[0], range[1],
+                                           transfer_function);
+}
+
+/* The transfer function of a preset, or of the colours of labels, all of which have the same extinction. */
+static TetcastStatus make_transfer_function(Stage *stage, const RenderOptions *options, const double range[2]) {
+  const bool labelled = stage->uniform && stage->array;
+  TetcastTransferFunction **result = &stage->transfer_function, *map = NULL;
+  if (!labelled)
+    return stage_preset(stage, options, range, result);
+  TetcastStatus status = TETCAST_OK;
+  if (options->preset || stage->matter.count == 0)
+    status = stage_preset(stage, options, range, &map);
+  if (status == TETCAST_OK)
+    status = matter_shade(stage->context, &stage->matter, map, &options->labels, result);
+  tetcast_transfer_function_destroy(&map);
+  return status;
+}
+
 static TetcastStatus set_transfer_function(Stage *stage, const RenderOptions *options, const double *range) {
   TetcastStatus status = TETCAST_OK;
   if (!stage->transfer_function) {
@@ -253,11 +377,10 @@ static TetcastStatus set_transfer_function(Stage *stage, const RenderOptions *op
     else if (render_options_range(options) == RANGE_QUANTILES)
       range = stage->quantiles;
     memcpy(stage->shown, range, sizeof stage->shown);
-    const bool labelled = stage->uniform && stage->array;
-    status = labelled ? matter_shade(stage->context, stage->scene, &stage->matter, options->preset, range,
-                                     &stage->transfer_function)
-                      : tetcast_scene_create_preset(stage->scene, render_options_preset(options), range[0], range[1],
-                                                    &stage->transfer_function);
+    if (stage->designed)
+      memcpy(stage->shown, stage->design.map.range, sizeof stage->shown);
+    status = stage->designed ? stage_shade_design(stage, options, &stage->design, NULL, &stage->transfer_function)
+                             : make_transfer_function(stage, options, range);
   }
   if (status == TETCAST_OK && stage->rows.count == 0) /* rows the scene has by now */
     status = render_options_surfaces_alone(options)
@@ -288,6 +411,11 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
               stage->array ? stage->array : "of the mesh");
     return CLI_FAILED;
   }
+  if (options->labels.count > 0 && !(stage->uniform && stage->array)) {
+    cli_error("--label: the values of %s are not numbers of materials or blocks: whole ones of cells, at most 256",
+              stage->array ? stage->array : "the mesh");
+    return CLI_FAILED;
+  }
   cli_interrupt_hold(true);
   TetcastStatus status = create_volume(stage, options);
   if (status == TETCAST_OK && !stage->scene)
@@ -306,8 +434,8 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
   if (status == TETCAST_OK && stage->field && render_options_range(options) == RANGE_QUANTILES)
     status =
         tetcast_statistics_quantiles(stage->context, stage->mesh, stage->field, options->range, 2, stage->quantiles);
-  if (status == TETCAST_OK)
-    status = surfaces_outline(stage->scene, options);
+  if (status == TETCAST_OK && stage->field)
+    status = find_design(stage, options);
   if (status != TETCAST_OK)
     return cli_failed(status);
   tetcast_volume_info(stage->volume, &stage->info);
@@ -331,6 +459,43 @@ int stage_shade(Stage *stage, const RenderOptions *options, const double range[2
   return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }
 
+/* What the colours of a picture are, NULL: there is no single map of them. */
+static json_t *transfer_choice(const Stage *stage, const RenderOptions *options) {
+  if (!stage->transfer_function || stage->rows.count > 0)
+    return NULL;
+  const bool labelled = stage->uniform && stage->array;
+  json_t *transfer = json_object();
+  const char *reason = render_options_given(options, OPTION_TRANSFER) ? "the transfer function was given"
+                       : stage->designed                              ? stage->design.reason
+                       : labelled ? "numbers of materials or the like: a colour for each"
+                                  : "the range that was asked for, or that of all values";
+  if (!render_options_given(options, OPTION_TRANSFER) && !labelled) {
+    const bool diverging = stage->designed && stage->design.map.diverging;
+    const bool chosen = diverging && !render_options_given(options, OPTION_PRESET);
+    json_object_set_new(transfer, "preset", cli_json_text(chosen ? "coolwarm" : render_options_preset(options)));
+    json_object_set_new(transfer, "range", cli_json_array(stage->shown, 2));
+    json_object_set_new(transfer, "scale",
+                        json_string(!stage->designed                ? "linear"
+                                    : stage->design.map.logarithmic ? "logarithmic"
+                                    : diverging                     ? "diverging"
+                                                                    : "linear"));
+  }
+  json_object_set_new(transfer, "why", json_string(reason));
+  return transfer;
+}
+
+json_t *stage_choices(const Stage *stage, const RenderOptions *options) {
+  json_t *choices = json_object(), *view = json_object(), *transfer = transfer_choice(stage, options);
+  json_object_set_new(choices, "array", stage->array ? cli_json_text(stage->array) : json_null());
+  json_object_set_new(choices, "transfer", transfer ? transfer : json_null());
+  json_object_set_new(view, "eye", cli_json_array(stage->camera.eye, 3));
+  json_object_set_new(view, "target", cli_json_array(stage->camera.target, 3));
+  json_object_set_new(view, "up", cli_json_array(stage->camera.up, 3));
+  json_object_set_new(view, "why", json_string(view_reason(options, stage->info.bounds)));
+  json_object_set_new(choices, "view", view);
+  return choices;
+}
+
 void stage_drop_dataset(Stage *stage) {
   tetcast_field_destroy(&stage->field);
   tetcast_field_destroy(&stage->second);
@@ -344,6 +509,7 @@ void stage_release(Stage *stage) {
   tetcast_scene_destroy(&stage->scene);
   transfer_file_release(&stage->rows);
   tetcast_transfer_function_destroy(&stage->transfer_function);
+  tetcast_transfer_function_destroy(&stage->preset);
   tetcast_volume_destroy(&stage->volume);
   stage_drop_dataset(stage);
   tetcast_context_destroy(&stage->context);

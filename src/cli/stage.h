@@ -7,6 +7,7 @@
 
 #include "adapter.h"
 #include "coefficients.h"
+#include "design.h"
 #include "matter.h"
 #include "render_options.h"
 #include "transfer_file.h"
@@ -20,15 +21,18 @@ typedef struct Stage {
   TetcastVolume *volume;
   TetcastVolumeInfo info;
   TetcastTransferFunction *transfer_function;
-  TransferRows rows;    /* of a transfer function of two dimensions */
-  TetcastField *second; /* its second quantity, until stage_drop_dataset(); NULL: it needs none */
+  TetcastTransferFunction *preset; /* the shape of a preset that is a file's; NULL: it has a name */
+  TransferRows rows;               /* of a transfer function of two dimensions */
+  TetcastField *second;            /* its second quantity, until stage_drop_dataset(); NULL: it needs none */
   TetcastScene *scene;
   TetcastCamera camera;
   double shown[2];     /* the range of the colour map, where that was made for one */
   double range[2];     /* of the field's finite values */
   double quantiles[2]; /* where --range has shares of the volume: their values */
-  int64_t nonfinite;   /* how many of its values are not finite */
-  char *array;  /* what was read, as --array would name it; NULL: coefficients, or uniform matter without labels */
+  Design design;       /* what was found from the values, where no range was given */
+  bool designed;
+  int64_t nonfinite; /* how many of its values are not finite */
+  char *array;       /* what was read, as --array would name it; NULL: coefficients, or uniform matter without labels */
   bool uniform; /* nothing else is there to be drawn: matter, in the colours of the array's labels if there is one */
   Matter matter;
   double read_seconds, prepare_seconds;
@@ -36,6 +40,7 @@ typedef struct Stage {
   int64_t step;         /* that was read */
   bool of_series;       /* the volume and the scene serve the next step as well, if it has the same mesh */
   uint64_t fingerprint; /* of the volume's mesh */
+  const double *whole;  /* the range of all steps' values; NULL: each step's own */
 } Stage;
 
 /* Each step returns an exit code. The first is what can be known to fail before the mesh is read. */
@@ -61,6 +66,21 @@ int stage_prepare(Stage *stage, const RenderOptions *options);
 /* Gives the scene its transfer function, if it has no coefficients; if there is none yet, for the range that the
  * options state, or `range`. */
 int stage_shade(Stage *stage, const RenderOptions *options, const double range[2]);
+
+/* The preset that the options name over a range, with the extinction that suits the scene. */
+TetcastStatus stage_preset(const Stage *stage, const RenderOptions *options, const double range[2],
+                           TetcastTransferFunction **transfer_function);
+
+/* What a transfer function is to be found by, as the options say. */
+DesignDesc stage_design_desc(const Stage *stage, const RenderOptions *options);
+
+/* Makes a transfer function of a design, in the colours of a preset; NULL: in those that the options or the design ask
+ * for. The camera of a first picture counts, whatever this one's is: another view of the same shows the same matter. */
+TetcastStatus stage_shade_design(const Stage *stage, const RenderOptions *options, const Design *design,
+                                 const char *preset, TetcastTransferFunction **transfer_function);
+
+/* Which array, colours and view are drawn, and why, as JSON; the caller releases it. */
+json_t *stage_choices(const Stage *stage, const RenderOptions *options);
 
 /* Gives back the memory of what was read; the scene does not need it. */
 void stage_drop_dataset(Stage *stage);

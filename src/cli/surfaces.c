@@ -53,15 +53,13 @@ static TetcastStatus set_isosurfaces(TetcastScene *scene, const TextList *list,
   return status;
 }
 
-TetcastStatus surfaces_outline(TetcastScene *scene, const RenderOptions *options) {
-  if (!render_options_given(options, OPTION_OUTLINE))
-    return TETCAST_OK;
+void surfaces_outline(const RenderOptions *options, double color[3]) {
   const double *back = options->background;
   const double brightness = 1 - back[3] + back[3] * (0.2126 * back[0] + 0.7152 * back[1] + 0.0722 * back[2]);
-  double color[3];
-  if (!*options->outline || !surfaces_parse_color(options->outline, color))
-    color[0] = color[1] = color[2] = brightness < 0.5; /* what stands out */
-  return tetcast_scene_set_outline(scene, color);
+  if (!options->outline || !*options->outline || !surfaces_parse_color(options->outline, color))
+    color[0] = color[1] = color[2] = brightness < 0.5 ? 0.75 : 0.4; /* what stands out */
+  for (int k = 0; k < 3; k++)
+    color[k] /= render_options_gain(options); /* it is not light */
 }
 
 static TetcastStatus set_light(TetcastScene *scene, const RenderOptions *options) {

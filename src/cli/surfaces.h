@@ -16,7 +16,7 @@ TetcastStatus surfaces_set_colors(TetcastContext *context, TetcastScene *scene,
 TetcastStatus surfaces_set(TetcastScene *scene, const RenderOptions *options,
                            const TetcastTransferFunction *transfer_function, const double range[2]);
 
-/* Gives the scene the outline that the options say: black, or white on a dark background, unless they have a colour. */
-TetcastStatus surfaces_outline(TetcastScene *scene, const RenderOptions *options);
+/* The colour of the outline that the options say: black, or white on a dark background, unless they have a colour. */
+void surfaces_outline(const RenderOptions *options, double color[3]);
 
 #endif

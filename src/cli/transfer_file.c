@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli.h"
+#include "curves.h"
 #include "json.h"
 
 /* The rows of `width` numbers under a key, for free(); NULL after a message. */
@@ -28,7 +29,8 @@ static double *load_knots(const char *place, const char *key, const json_t *rows
 }
 
 static bool check_keys(const char *place, const json_t *root) {
-  static const char *const known[] = {"color", "extinction", "opacity", "unit_distance", "at", "second", "rows"};
+  static const char *const known[] = {"color",  "extinction", "opacity",   "unit_distance", "at",
+                                      "second", "rows",       "gaussians", "spline",        "log"};
   void *position = json_object_iter((json_t *)root);
   for (; position; position = json_object_iter_next((json_t *)root, position)) {
     const char *key = json_object_iter_key(position);
@@ -45,6 +47,8 @@ static bool check_keys(const char *place, const json_t *root) {
       return false;
     }
   }
+  if (curves_gaussian(root)) /* which says itself what may be beside it */
+    return true;
   const bool extinction = json_object_get(root, "extinction"), opacity = json_object_get(root, "opacity");
   if (!json_object_get(root, "color") || extinction == opacity) {
     cli_error("%s: expected \"color\" and either \"extinction\" or \"opacity\"", place);
@@ -81,6 +85,8 @@ static TetcastTransferFunction *create(TetcastContext *context, const char *plac
   }
   if (unit_distance)
     desc.unit_distance = json_number_value(unit_distance);
+  if (curves_gaussian(root))
+    return curves_of_gaussians(context, place, root, &desc);
 
   TetcastTransferFunction *result = NULL;
   const bool is_opacity = json_object_get(root, "opacity");
@@ -111,6 +117,8 @@ static TetcastTransferFunction *create(TetcastContext *context, const char *plac
   }
   free(color);
   free(second);
+  if (result && !curves_through(context, place, root, &result))
+    tetcast_transfer_function_destroy(&result);
   return result;
 }
 

@@ -48,41 +48,121 @@ const char *view_fault(const RenderOptions *options) {
              : NULL;
 }
 
-/* The axis to look along: z, but not from where the mesh is little more than a line, nor along the given up. Of the
- * three faces of the bounds the one that is seen has a tenth of the largest one's area at least. */
-static int view_axis(const RenderOptions *options, const double bounds[6]) {
-  static const int preferred[3] = {2, 1, 0};
-  double largest = 0, area[3], widest = 0;
-  bool allowed[3];
-  for (int k = 0; k < 3; k++)
-    largest = fmax(largest, bounds[2 * k + 1] - bounds[2 * k]);
-  for (int k = 0; k < 3; k++) {
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    const double axis[3] = {k == 0, k == 1, k == 2};
-    allowed[k] = !render_options_given(options, OPTION_UP) || !parallel(options->up, axis);
-    area[k] = largest > 0
-                  ? (bounds[2 * i + 1] - bounds[2 * i]) / largest * ((bounds[2 * j + 1] - bounds[2 * j]) / largest)
-                  : 0;
-    if (allowed[k])
-      widest = fmax(widest, area[k]);
+/* Cosine and sine of an angle in degrees, without rounding at right angles. */
+static void turn(double angle, double *cosine, double *sine) {
+  const double quarters = angle / 90;
+  *cosine = cos(angle * degree);
+  *sine = sin(angle * degree);
+  if (quarters == floor(quarters)) {
+    *cosine = round(*cosine);
+    *sine = round(*sine);
   }
-  for (int i = 0; i < 3; i++)
-    if (allowed[preferred[i]] && area[preferred[i]] >= 0.1 * widest)
-      return preferred[i];
-  return 2;
 }
 
-/* Along -z, +y or -x. */
-static void place_eye(const RenderOptions *options, const double bounds[6], double distance, TetcastCamera *camera) {
-  const int axis = view_axis(options, bounds);
-  memcpy(camera->eye, camera->target, sizeof camera->eye);
-  camera->eye[axis] += axis == 1 ? -distance : distance;
+/* Where the eye is, as seen from what it looks at, and what is up: a turntable. From azimuth 0 the eye looks along +y
+ * where z is up, and along -z where y is; it goes round against the clock, as seen from above. */
+static void place_on_turntable(const double axis[3], double azimuth, double elevation, double eye[3], double up[3]) {
+  double u[3], front[3] = {0, -1, 0}, side[3], ca, sa, ce, se;
+  normalize(axis, u);
+  if (fabs(u[1]) > 0.9) {
+    front[1] = 0;
+    front[2] = 1;
+  }
+  const double along = u[0] * front[0] + u[1] * front[1] + u[2] * front[2];
+  for (int i = 0; i < 3; i++)
+    front[i] -= along * u[i];
+  normalize(front, front);
+  for (int i = 0; i < 3; i++)
+    side[i] = u[(i + 1) % 3] * front[(i + 2) % 3] - u[(i + 2) % 3] * front[(i + 1) % 3];
+  turn(azimuth, &ca, &sa);
+  turn(elevation, &ce, &se);
+  for (int i = 0; i < 3; i++) {
+    const double flat = sa * side[i] + ca * front[i];
+    eye[i] = ce * flat + se * u[i];
+    up[i] = ce * u[i] - se * flat;
+  }
+}
+
+enum { ISO, PLUS_X, MINUS_X, PLUS_Y, MINUS_Y, PLUS_Z, MINUS_Z };
+
+/* The side that shows a mesh which is flat, else iso. Flat is what one extent of is a fiftieth of the two others at
+ * most.
+ */
+static int side_of(const double bounds[6]) {
+  static const int views[3] = {MINUS_X, PLUS_Y, MINUS_Z};
+  double extent[3];
+  for (int k = 0; k < 3; k++)
+    extent[k] = bounds[2 * k + 1] / 2 - bounds[2 * k] / 2;
+  for (int k = 2; k >= 0; k--)
+    if (extent[k] <= fmin(extent[(k + 1) % 3], extent[(k + 2) % 3]) / 50)
+      return views[k];
+  return ISO;
+}
+
+/* The view by its name: looks along an axis, z up or, along z, y. */
+static void place_on_axis(int view, double eye[3], double up[3]) {
+  const int axis = (view - 1) / 2;
+  for (int i = 0; i < 3; i++) {
+    eye[i] = i != axis ? 0 : view % 2 ? -1 : 1;
+    up[i] = i == (axis == 2 ? 1 : 2);
+  }
+}
+
+/* Where the eye is, and what is up, where it is said neither. */
+static void find_direction(const RenderOptions *options, const double bounds[6], double eye[3], double up[3]) {
+  static const double z[3] = {0, 0, 1}, azimuth = 30, elevation = 25;
+  const bool turned = render_options_given(options, OPTION_AZIMUTH) || render_options_given(options, OPTION_ELEVATION);
+  const int view = render_options_given(options, OPTION_VIEW) ? options->view : turned ? ISO : side_of(bounds);
+  const double *axis = render_options_given(options, OPTION_UP) ? options->up : z;
+  if (view != ISO) {
+    place_on_axis(view, eye, up);
+    if (!render_options_given(options, OPTION_UP) || !parallel(axis, eye) || render_options_given(options, OPTION_VIEW))
+      return;
+  }
+  place_on_turntable(axis, render_options_given(options, OPTION_AZIMUTH) ? options->azimuth : azimuth,
+                     render_options_given(options, OPTION_ELEVATION) ? options->elevation : elevation, eye, up);
+}
+
+/* The least distance from which all corners of the bounds are in the picture, with a margin, wider at the sides, where
+ * the legend is. Seen along its axes, a ball round them is what fits. */
+static double fit(const TetcastCamera *camera, const double bounds[6], const double eye[3], const double up[3],
+                  double aspect) {
+  const double tangent = tan(camera->fovy / 2 * degree), high = 0.9 * tangent, wide = 0.8 * tangent * aspect;
+  double unit[3], side[3], top[3], distance = 0;
+  normalize(up, unit);
+  for (int i = 0; i < 3; i++)
+    side[i] = unit[(i + 1) % 3] * eye[(i + 2) % 3] - unit[(i + 2) % 3] * eye[(i + 1) % 3];
+  normalize(side, side);
+  for (int i = 0; i < 3; i++)
+    top[i] = eye[(i + 1) % 3] * side[(i + 2) % 3] - eye[(i + 2) % 3] * side[(i + 1) % 3];
+  for (int corner = 0; corner < 8; corner++) {
+    double x = 0, y = 0, z = 0;
+    for (int k = 0; k < 3; k++) {
+      const double from = bounds[2 * k + (corner >> k & 1)] - camera->target[k];
+      x += from * side[k];
+      y += from * top[k];
+      z += from * eye[k];
+    }
+    distance = fmax(distance, z + fmax(fabs(x) / wide, fabs(y) / high));
+  }
+  return distance;
+}
+
+const char *view_reason(const RenderOptions *options, const double bounds[6]) {
+  if (render_options_given(options, OPTION_EYE))
+    return "the eye was given";
+  if (render_options_given(options, OPTION_VIEW))
+    return "the view was given by its name";
+  if (render_options_given(options, OPTION_AZIMUTH) || render_options_given(options, OPTION_ELEVATION))
+    return "the angles were given";
+  return side_of(bounds) == ISO ? "nothing was said: oblique, so that three sides are seen"
+                                : "nothing was said, and the mesh is flat: from the side that shows it";
 }
 
 bool view_complete(const RenderOptions *options, const double bounds[6], TetcastCamera *camera) {
   const double aspect = options->size[0] / options->size[1];
   *camera = tetcast_camera_default(bounds, aspect);
-  double distance = camera->eye[2] - camera->target[2];
+  double distance = (camera->eye[2] - camera->target[2]) / options->zoom, direction[3], up[3];
   if (render_options_given(options, OPTION_FOVY)) {
     distance *= distance_factor(options->fovy, aspect) / distance_factor(camera->fovy, aspect);
     camera->fovy = options->fovy;
@@ -98,7 +178,15 @@ bool view_complete(const RenderOptions *options, const double bounds[6], Tetcast
   if (eye)
     memcpy(camera->eye, options->eye, sizeof camera->eye);
   else
-    place_eye(options, bounds, distance, camera);
+    find_direction(options, bounds, direction, up);
+  if (!eye && !render_options_given(options, OPTION_ORTHO)) {
+    const double fitting = fit(camera, bounds, direction, up, aspect) / options->zoom;
+    distance = fitting > 0 && isfinite(fitting) ? fitting : distance;
+  }
+  for (int i = 0; i < 3 && !eye; i++) {
+    camera->eye[i] = camera->target[i] + distance * direction[i];
+    camera->up[i] = up[i];
+  }
   if (same(camera->eye, camera->target)) /* the eye is in the centre, and nothing said where to look */
     camera->target[2] -= distance;
   double forward[3];

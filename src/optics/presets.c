@@ -3,16 +3,23 @@
 
 #include "optics/transfer.h"
 
-enum { KNOTS = 17 };
+enum { COLORS = 17 };
 
-/* Colour maps at 17 equidistant knots, as display values (sRGB). viridis, plasma, inferno and magma by N. Smith and
- * S. van der Walt are in the public domain (CC0); turbo by A. Mikhailov; coolwarm after K. Moreland, Diverging color
- * maps for scientific visualization, 2009; gray. */
+/* Colour maps at equidistant knots, and categories in steps of equal width, as display values (sRGB). viridis, plasma,
+ * inferno and magma by N. Smith and S. van der Walt and cividis by J. Nuñez, C. Anderton and R. Renslow are in the
+ * public domain (CC0); turbo by A. Mikhailov; coolwarm after K. Moreland, Diverging color maps for scientific
+ * visualization, 2009; RdBu by C. Brewer, of ColorBrewer (Apache-2.0); rainbow-desaturated as in ParaView (BSD);
+ * okabe-ito by M. Okabe and K. Ito, which colour-blind people tell apart, with gray for black; gray and distinct10 are
+ * our own. */
 static const struct Preset {
   const char *name;
-  unsigned char color[KNOTS][3];
+  TetcastPresetKind kind;
+  int count; /* of the colours */
+  unsigned char color[COLORS][3];
 } presets[] = {
     {"viridis",
+     TETCAST_PRESET_SEQUENTIAL,
+     17,
      {{68, 1, 84},
       {72, 24, 106},
       {71, 45, 123},
@@ -31,6 +38,8 @@ static const struct Preset {
       {216, 226, 25},
       {253, 231, 37}}},
     {"plasma",
+     TETCAST_PRESET_SEQUENTIAL,
+     17,
      {{13, 8, 135},
       {49, 5, 151},
       {76, 2, 161},
@@ -49,6 +58,8 @@ static const struct Preset {
       {248, 223, 37},
       {240, 249, 34}}},
     {"inferno",
+     TETCAST_PRESET_SEQUENTIAL,
+     17,
      {{0, 0, 4},
       {11, 7, 36},
       {33, 12, 74},
@@ -67,6 +78,8 @@ static const struct Preset {
       {242, 234, 105},
       {252, 255, 164}}},
     {"magma",
+     TETCAST_PRESET_SEQUENTIAL,
+     17,
      {{0, 0, 4},
       {10, 8, 34},
       {29, 17, 71},
@@ -85,6 +98,8 @@ static const struct Preset {
       {253, 226, 163},
       {252, 253, 191}}},
     {"turbo",
+     TETCAST_PRESET_SEQUENTIAL,
+     17,
      {{48, 18, 59},
       {64, 64, 162},
       {70, 107, 227},
@@ -103,6 +118,8 @@ static const struct Preset {
       {169, 22, 1},
       {122, 4, 3}}},
     {"coolwarm",
+     TETCAST_PRESET_DIVERGING,
+     17,
      {{59, 76, 192},
       {78, 104, 215},
       {98, 130, 234},
@@ -121,6 +138,8 @@ static const struct Preset {
       {203, 62, 56},
       {180, 4, 38}}},
     {"gray",
+     TETCAST_PRESET_SEQUENTIAL,
+     17,
      {{0, 0, 0},
       {16, 16, 16},
       {32, 32, 32},
@@ -138,6 +157,67 @@ static const struct Preset {
       {223, 223, 223},
       {239, 239, 239},
       {255, 255, 255}}},
+    {"cividis",
+     TETCAST_PRESET_SEQUENTIAL,
+     16,
+     {{0, 34, 78},
+      {0, 46, 108},
+      {30, 58, 111},
+      {53, 69, 108},
+      {71, 81, 108},
+      {87, 93, 109},
+      {102, 105, 112},
+      {117, 117, 117},
+      {132, 130, 121},
+      {148, 142, 119},
+      {165, 156, 116},
+      {183, 169, 110},
+      {200, 184, 102},
+      {219, 199, 90},
+      {238, 214, 73},
+      {254, 232, 56}}},
+    {"RdBu",
+     TETCAST_PRESET_DIVERGING,
+     11,
+     {{103, 0, 31},
+      {178, 24, 43},
+      {214, 96, 77},
+      {244, 165, 130},
+      {253, 219, 199},
+      {247, 247, 247},
+      {209, 229, 240},
+      {146, 197, 222},
+      {67, 147, 195},
+      {33, 102, 172},
+      {5, 48, 97}}},
+    {"rainbow-desaturated",
+     TETCAST_PRESET_SEQUENTIAL,
+     8,
+     {{71, 71, 219}, {0, 0, 92}, {0, 255, 255}, {0, 128, 0}, {255, 255, 0}, {255, 97, 0}, {107, 0, 0}, {224, 77, 77}}},
+    {"okabe-ito",
+     TETCAST_PRESET_CATEGORICAL,
+     8,
+     {{230, 159, 0},
+      {86, 180, 233},
+      {0, 158, 115},
+      {213, 94, 0},
+      {0, 114, 178},
+      {204, 121, 167},
+      {240, 228, 66},
+      {128, 128, 128}}},
+    {"distinct10",
+     TETCAST_PRESET_CATEGORICAL,
+     10,
+     {{58, 113, 177},
+      {240, 138, 36},
+      {74, 157, 63},
+      {209, 63, 66},
+      {139, 104, 184},
+      {139, 92, 72},
+      {224, 129, 186},
+      {128, 128, 128},
+      {184, 179, 48},
+      {44, 174, 190}}},
 };
 
 enum { PRESETS = sizeof presets / sizeof *presets };
@@ -146,31 +226,56 @@ const char *tc_preset_name(int i) {
   return i >= 0 && i < PRESETS ? presets[i].name : NULL;
 }
 
+/* The preset of this name, with _r behind it the reverse; NULL: there is none. */
+static const struct Preset *find_preset(const char *name, bool *reverse) {
+  const size_t length = strlen(name);
+  for (int i = 0; i < PRESETS; ++i) {
+    const size_t own = strlen(presets[i].name);
+    *reverse = length == own + 2 && strcmp(name + own, "_r") == 0;
+    if ((*reverse || length == own) && strncmp(name, presets[i].name, own) == 0)
+      return &presets[i];
+  }
+  return NULL;
+}
+
+TetcastPresetKind tc_preset_kind(const char *name) {
+  bool reverse;
+  const struct Preset *preset = find_preset(name, &reverse);
+  return preset ? preset->kind : TETCAST_PRESET_NONE;
+}
+
+static TetcastStatus refuse_name(TetcastContext *context, const char *name) {
+  char names[256] = "";
+  for (int i = 0; i < PRESETS; ++i)
+    strcat(strcat(names, i ? ", " : ""), presets[i].name);
+  return tc_error(context, TETCAST_ERROR_ARGUMENT, "there is no preset \"%s\"; there are %s, each reversed with _r",
+                  name, names);
+}
+
 TetcastStatus tc_transfer_create_preset(TetcastContext *context, const char *name, double low, double high,
                                         double extinction, TetcastTransferFunction **out) {
-  const struct Preset *preset = NULL;
-  char names[256] = "";
-  for (int i = 0; i < PRESETS; ++i) {
-    if (strcmp(presets[i].name, name) == 0)
-      preset = &presets[i];
-    strcat(strcat(names, i ? ", " : ""), presets[i].name);
-  }
-  if (!preset) {
-    return tc_error(context, TETCAST_ERROR_ARGUMENT, "there is no preset \"%s\"; there are %s", name, names);
-  }
-  double color[KNOTS][4], ramp[2][2] = {{low, low < high ? 0 : extinction}, {high, extinction}};
-  int64_t count = 0;
-  for (int i = 0; i < KNOTS; ++i) {
-    /* Where the range is a single value, or so narrow that knots would fall on each other, the middle colour alone. */
-    const double w = i / (KNOTS - 1.0), value = low * (1 - w) + high * w;
-    if (count > 0 && !(value > color[count - 1][0]))
-      continue;
-    color[count][0] = i == KNOTS - 1 ? high : value;
+  bool reverse;
+  const struct Preset *preset = find_preset(name, &reverse);
+  if (!preset)
+    return refuse_name(context, name);
+  static const double ramp[2][2] = {{0, 0}, {1, 1}};
+  double color[2 * COLORS][4];
+  const bool steps = preset->kind == TETCAST_PRESET_CATEGORICAL;
+  const int count = steps ? 2 * preset->count : preset->count;
+  for (int i = 0; i < count; ++i) {
+    const int own = steps ? i / 2 : i;
+    const unsigned char *bytes = preset->color[reverse ? preset->count - 1 - own : own];
+    color[i][0] = steps ? (i + 1) / 2 / (double)preset->count : i / (count - 1.0);
     for (int k = 0; k < 3; ++k)
-      color[count][k + 1] = preset->color[low < high ? i : KNOTS / 2][k] / 255.0;
-    ++count;
+      color[i][k + 1] = bytes[k] / 255.0;
   }
   const TetcastTransferFunctionDesc desc = {
-      .color = color[0], .color_count = count, .extinction = ramp[0], .extinction_count = low < high ? 2 : 1};
-  return tc_transfer_create(context, &desc, out);
+      .color = color[0], .color_count = count, .extinction = ramp[0], .extinction_count = 2};
+  TetcastTransferFunction *shape;
+  TetcastStatus status = tc_transfer_create(context, &desc, &shape);
+  if (status)
+    return status;
+  status = tc_transfer_stretch(context, shape, low, high, extinction, out);
+  tc_transfer_destroy(shape);
+  return status;
 }

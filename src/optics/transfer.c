@@ -428,3 +428,47 @@ TcOptics tc_piece_at(const TcPiece *piece, double s) {
 TcOptics tc_pieces_at(const TcPieces *pieces, double s) {
   return tc_piece_at(&pieces->pieces[tc_piece_above(pieces, s)], s);
 }
+
+/* The shape's knots over [low, high]. Where that is so narrow that knots fall on each other, the first of them; of a
+ * step both. How many there are. */
+static int64_t stretch_knots(const Knots *knots, double low, double high, double *out) {
+  int64_t count = 0;
+  const int width = knots->width;
+  for (int64_t i = 0; i < knots->count; ++i) {
+    const double *knot = knots->data + i * width, value = knot[0] == 1 ? high : low * (1 - knot[0]) + high * knot[0];
+    double *next = out + count * width;
+    const bool above = count == 0 || value > next[-width], step = i > 0 && knot[0] == knot[-width];
+    if (!above && (!step || (count > 1 && next[-2 * width] == next[-width])))
+      continue;
+    memcpy(next, knot, (size_t)width * sizeof *next);
+    next[0] = above ? value : next[-width];
+    ++count;
+  }
+  return count;
+}
+
+TetcastStatus tc_transfer_stretch(TetcastContext *context, const TetcastTransferFunction *shape, double low,
+                                  double high, double extinction, TetcastTransferFunction **out) {
+  const Knots color = {shape->color, shape->color_count, 4};
+  const Knots extinctions = {shape->extinction, shape->extinction_count, 2};
+  double *knots, largest = 0;
+  if (!tc_allocate_array(context, (void **)&knots, 4 * color.count + 2 * extinctions.count, sizeof *knots, "knots"))
+    return TETCAST_ERROR_MEMORY;
+  double *ramp = knots + 4 * color.count;
+  for (int64_t i = 0; i < extinctions.count; ++i)
+    largest = fmax(largest, extinctions.data[2 * i + 1]);
+  TetcastTransferFunctionDesc desc = {.color = knots, .color_count = 1, .extinction = ramp, .extinction_count = 1};
+  if (low < high) {
+    desc.color_count = stretch_knots(&color, low, high, knots);
+    desc.extinction_count = stretch_knots(&extinctions, low, high, ramp);
+  } else {
+    limit_above(&color, 0.5, knots + 1);
+    ramp[1] = largest;
+    knots[0] = ramp[0] = low;
+  }
+  for (int64_t i = 0; largest > 0 && i < desc.extinction_count; ++i)
+    ramp[2 * i + 1] = ramp[2 * i + 1] / largest * extinction;
+  const TetcastStatus status = tc_transfer_create(context, &desc, out);
+  tc_release(context, knots);
+  return status;
+}

@@ -104,11 +104,17 @@ TetcastStatus tc_transfer_rescale(TetcastContext *context, const TetcastTransfer
                                   int length_exponent, TetcastTransferFunction **out);
 void tc_transfer_destroy(TetcastTransferFunction *transfer);
 
+/* Makes a transfer function of a shape over [0, 1]: over [low, high], with `extinction` in place of its largest
+ * extinction, in proportion. Where low is high, it is the colour of 0.5 and the largest extinction. */
+TetcastStatus tc_transfer_stretch(TetcastContext *context, const TetcastTransferFunction *shape, double low,
+                                  double high, double extinction, TetcastTransferFunction **out);
+
 /* Makes a transfer function of colour map `name` over [low, high] with an extinction that rises from 0 to `extinction`.
  */
 TetcastStatus tc_transfer_create_preset(TetcastContext *context, const char *name, double low, double high,
                                         double extinction, TetcastTransferFunction **out);
 const char *tc_preset_name(int i);
+TetcastPresetKind tc_preset_kind(const char *name);
 
 /* The optical depth beyond which e^−τ is zero in double precision, so that what lies behind can't change the colour. */
 #define TC_OPAQUE_DEPTH 746.0

@@ -9,6 +9,7 @@ typedef struct Outline {
   const TcView *view;
   const TetcastArray *stop;
   TetcastFrame *frame;
+  int64_t height, first_row; /* of the picture that the frame has rows of */
   const double *color;
   int exponent; /* the volume's unit of length is 2^exponent of the mesh's */
   bool front;   /* the edge under way lies before the mesh, else behind it */
@@ -31,8 +32,7 @@ static bool is_hidden(const Outline *o, int64_t x, int64_t y, double z) {
   const TetcastFrame *frame = o->frame;
   double distance = z;
   if (!o->view->orthographic) {
-    const double u = (2 * (double)x + 1) / (double)frame->width - 1,
-                 v = 1 - (2 * (double)y + 1) / (double)frame->height;
+    const double u = (2 * (double)x + 1) / (double)frame->width - 1, v = 1 - (2 * (double)y + 1) / (double)o->height;
     double direction[3];
     for (int k = 0; k < 3; ++k)
       direction[k] = o->view->forward[k] + u * o->view->right[k] + v * o->view->up[k];
@@ -44,7 +44,7 @@ static bool is_hidden(const Outline *o, int64_t x, int64_t y, double z) {
 /* Lays the line's colour over a pixel, or under it. */
 static void blend(const Outline *o, int64_t x, int64_t y, double coverage) {
   TetcastFrame *frame = o->frame;
-  char *row = (char *)frame->pixels + y * frame->row_stride;
+  char *row = (char *)frame->pixels + (y - o->first_row) * frame->row_stride;
   double rgba[4];
   for (int k = 0; k < 4; ++k) {
     rgba[k] = frame->type == TETCAST_TYPE_FLOAT64 ? ((const double *)(const void *)row)[4 * x + k]
@@ -53,13 +53,13 @@ static void blend(const Outline *o, int64_t x, int64_t y, double coverage) {
   const double share = o->front ? coverage : coverage * (1 - rgba[3]), kept = o->front ? 1 - coverage : 1;
   for (int k = 0; k < 4; ++k)
     rgba[k] = kept * rgba[k] + share * (k < 3 ? o->color[k] : 1);
-  tc_frame_put(frame, x, y, rgba);
+  tc_frame_put(frame, x, y - o->first_row, rgba);
 }
 
-/* The range of whole numbers in [0, count) between two numbers of any size. */
-static bool whole_range(double from, double to, int64_t count, int64_t *first, int64_t *last) {
-  from = fmax(floor(from), 0);
-  to = fmin(ceil(to), (double)(count - 1));
+/* The range of whole numbers in [begin, end) between two numbers of any size. */
+static bool whole_range(double from, double to, int64_t begin, int64_t end, int64_t *first, int64_t *last) {
+  from = fmax(floor(from), (double)begin);
+  to = fmin(ceil(to), (double)(end - 1));
   if (!(from <= to))
     return false;
   *first = (int64_t)from;
@@ -73,14 +73,15 @@ static void draw_line(const Outline *o, const Seen *a, const Seen *b) {
   const bool steep = fabs(dy) > fabs(dx);
   const double along = steep ? dy : dx, start = steep ? a->y : a->x, aside = steep ? a->x : a->y,
                slope = along != 0 ? (steep ? dx : dy) / along : 0;
+  const int64_t top = o->first_row, bottom = top + o->frame->height, width = o->frame->width;
   int64_t first, last;
-  if (!whole_range(fmin(start, start + along) - 2, fmax(start, start + along) + 1,
-                   steep ? o->frame->height : o->frame->width, &first, &last))
+  if (!whole_range(fmin(start, start + along) - 2, fmax(start, start + along) + 1, steep ? top : 0,
+                   steep ? bottom : width, &first, &last))
     return;
   for (int64_t i = first; i <= last; ++i) {
     const double middle = aside + ((double)i + 0.5 - start) * slope;
     int64_t from, to;
-    if (!whole_range(middle - 3, middle + 2, steep ? o->frame->width : o->frame->height, &from, &to))
+    if (!whole_range(middle - 3, middle + 2, steep ? 0 : top, steep ? width : bottom, &from, &to))
       continue;
     for (int64_t j = from; j <= to; ++j) {
       const int64_t x = steep ? j : i, y = steep ? i : j;
@@ -124,7 +125,7 @@ static void draw_edge(const Outline *o, double corner[2][3]) {
   for (int i = 0; i < 2; ++i) {
     const double depth = view->orthographic ? 1 : place[i][2];
     seen[i] = (Seen){.x = (place[i][0] / depth + 1) / 2 * (double)o->frame->width,
-                     .y = (1 - place[i][1] / depth) / 2 * (double)o->frame->height,
+                     .y = (1 - place[i][1] / depth) / 2 * (double)o->height,
                      .z = place[i][2]};
   }
   draw_line(o, &seen[0], &seen[1]);
@@ -137,10 +138,15 @@ static bool shows_outside(const TcView *view, double box[2][3], int k, int side)
   return side ? view->eye[k] > box[1][k] : view->eye[k] < box[0][k];
 }
 
-void tc_outline_draw(const TetcastScene *scene, const TcView *view, const TetcastArray *stop, TetcastFrame *frame) {
-  const TetcastVolume *volume = scene->volume;
-  Outline outline = {
-      .view = view, .stop = stop, .frame = frame, .color = scene->outline_color, .exponent = volume->exponent};
+void tc_outline_draw(const TetcastVolume *volume, const TcView *view, const TetcastArray *stop, const double color[3],
+                     int64_t height, int64_t first_row, TetcastFrame *frame) {
+  Outline outline = {.view = view,
+                     .stop = stop,
+                     .frame = frame,
+                     .height = height,
+                     .first_row = first_row,
+                     .color = color,
+                     .exponent = volume->exponent};
   double box[2][3];
   for (int k = 0; k < 3; ++k) {
     box[0][k] = ldexp(volume->info.bounds[2 * k], -volume->exponent);

@@ -9,8 +9,9 @@
 
 #include "render/render.h"
 
-/* Draws the outline into a picture of the scene from this camera whose rays stop at these distances (NULL: they don't).
- */
-void tc_outline_draw(const TetcastScene *scene, const TcView *view, const TetcastArray *stop, TetcastFrame *frame);
+/* Draws the outline into a picture of the volume from this camera whose rays stop at these distances (NULL: they
+ * don't): into the frame, which has the rows from `first_row` on of a picture with `height`. */
+void tc_outline_draw(const TetcastVolume *volume, const TcView *view, const TetcastArray *stop, const double color[3],
+                     int64_t height, int64_t first_row, TetcastFrame *frame);
 
 #endif

@@ -8,7 +8,6 @@
 #include "base/parallel.h"
 #include "base/vec3.h"
 #include "optics/sampled.h"
-#include "render/outline.h"
 #include "render/work.h"
 
 /* ── the choice among kernels ── */
@@ -188,9 +187,10 @@ static bool count_cells(const TcRender *render, int64_t x0, int64_t y0, int64_t 
 
 static bool render_tile(const TcRender *render, int64_t tile_x, int64_t tile_y, TcWorking *working) {
   const TcJob *job = &render->job;
-  const int64_t x0 = tile_x * TC_TILE, y0 = tile_y * TC_TILE;
+  const int64_t first = render->first_row, end = first + render->frame->height;
+  const int64_t x0 = tile_x * TC_TILE, y0 = first + tile_y * TC_TILE;
   const int64_t x1 = x0 + TC_TILE < job->width ? x0 + TC_TILE : job->width,
-                y1 = y0 + TC_TILE < job->height ? y0 + TC_TILE : job->height;
+                y1 = y0 + TC_TILE < end ? y0 + TC_TILE : end;
   const int64_t numbers = (x1 - x0) * (y1 - y0) * job->sums;
   const double samples = job->samples_x * job->samples_y;
   memset(working->sums, 0, (size_t)numbers * sizeof *working->sums);
@@ -202,7 +202,7 @@ static bool render_tile(const TcRender *render, int64_t tile_x, int64_t tile_y, 
   if (render->plain) {
     const int64_t row = (x1 - x0) * 4 * (int64_t)sizeof(double);
     for (int64_t y = y0; y < y1; ++y) {
-      memcpy((char *)render->frame->pixels + y * render->frame->row_stride + x0 * 4 * (int64_t)sizeof(double),
+      memcpy((char *)render->frame->pixels + (y - first) * render->frame->row_stride + x0 * 4 * (int64_t)sizeof(double),
              (char *)working->sums + (y - y0) * row, (size_t)row);
     }
     return true;
@@ -212,7 +212,7 @@ static bool render_tile(const TcRender *render, int64_t tile_x, int64_t tile_y, 
   gathered.cells = working->cells;
   for (int64_t y = y0; y < y1; ++y) {
     for (int64_t x = x0; x < x1; ++x, gathered.sums += job->sums, ++gathered.cells) {
-      const double bound = tc_frame_store(render->frame, x, y, &gathered);
+      const double bound = tc_frame_store(render->frame, x, y - first, &gathered);
       if (!(bound <= working->error))
         working->error = bound;
     }
@@ -363,7 +363,7 @@ static void plan_count(TcRender *render) {
 /* Renders all tiles. */
 static TetcastStatus run_tiles(TcRender *render, const TetcastProgress *progress) {
   render->tiles_x = (render->job.width + TC_TILE - 1) / TC_TILE;
-  render->tiles_y = (render->job.height + TC_TILE - 1) / TC_TILE;
+  render->tiles_y = (render->frame->height + TC_TILE - 1) / TC_TILE;
   int64_t side = 1;
   while (side < render->tiles_x || side < render->tiles_y)
     side *= 2;
@@ -460,13 +460,13 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   const bool measured = exact && !scene->blend && !depth && !tc_scene_has_surfaces(scene) && !tc_scene_is_lit(scene) &&
                         scene->row_count == 0 &&
                         (desc->tolerance > 0 || tc_frame_channel(frame, TETCAST_CHANNEL_ERROR));
-  TcRender render = {.scene = scene, .frame = frame};
+  TcRender render = {.scene = scene, .frame = frame, .first_row = desc->picture_height ? desc->first_row : 0};
   TcJob *job = &render.job;
   job->width = frame->width;
-  job->height = frame->height;
+  job->height = desc->picture_height ? desc->picture_height : frame->height;
   tc_sample_grid(desc->samples, &job->samples_x, &job->samples_y);
   TetcastStatus status =
-      tc_view_create(context, camera, scene->volume, (double)frame->width / (double)frame->height, &job->view);
+      tc_view_create(context, camera, scene->volume, (double)job->width / (double)job->height, &job->view);
   if (!status)
     status = tc_scene_prepare(scene);
   if (!status && !scene->coefficients && !scene->blend)
@@ -499,8 +499,6 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
     plan_count(&render);
   if (!status)
     status = run(&render, desc, &sum);
-  if (!status && scene->outlined)
-    tc_outline_draw(scene, &job->view, desc->stop, frame);
   keep_vertices(scene, job, job->precise != NULL);
   tc_sampler_destroy(sampler);
   forget_looks(context, &render);

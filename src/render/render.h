@@ -66,9 +66,7 @@ struct TetcastScene {
   int slice_count;
   TetcastBoundary boundary; /* opacity 0: it is not seen */
   TcLighting lighting;
-  bool outlined;           /* the edges of the mesh's bounding box are drawn */
-  double outline_color[3]; /* in this colour */
-  TcHalfSpace *clip;       /* [clip_count]; NULL: none */
+  TcHalfSpace *clip; /* [clip_count]; NULL: none */
   int clip_count;
   TcPrepared *prepared;
 };
@@ -132,10 +130,16 @@ void *tc_scene_swap_vertices(const TetcastScene *scene, bool single, void *verti
 TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *given,
                               TetcastFrame *frame, TetcastRenderStats *stats);
 
-/* Colour map `name` over [low, high] with an extinction that makes a good first picture of the scene's volume and
- * field. */
+/* A shape over [0, 1], of which the size of the extinctions doesn't count, over [low, high], with the extinction that
+ * makes a good first picture of the scene's volume and field; and colour map `name` with one that rises linearly. */
+TetcastStatus tc_scene_fit(const TetcastScene *scene, const TetcastTransferFunction *shape, double low, double high,
+                           TetcastTransferFunction **transfer);
 TetcastStatus tc_scene_preset(const TetcastScene *scene, const char *name, double low, double high,
                               TetcastTransferFunction **transfer);
+
+/* The shape, with extinctions multiplied by one factor; see tetcast_scene_scale_transfer_function(). */
+TetcastStatus tc_scene_scale(const TetcastScene *scene, const TetcastTransferFunction *shape, const TcView *view,
+                             double opacity, TetcastTransferFunction **transfer);
 
 /* Sets what a kernel needs to know of the scene: the shell, the field, the transfer function, coefficients or blend
  * mode. `bound` tells whether a bound on the error is wanted. */

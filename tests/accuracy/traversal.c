@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* No ray is lost and no segment doubled: random rays, and rays aimed through every vertex, along every edge and within
  * every face plane, on meshes chosen to hurt; in ray space, and on the screen with vertices moved so that rays meet
- * them exactly. TETCAST_RAYS sets the number of random rays (default 400,000 in all; the long run is 1e8). */
+ * them exactly. TETCAST_RAYS sets the number of random rays (default 200,000 in all; the long run is 1e8). */
 #include "all_kernels.h"
 
 #include <float.h>
@@ -541,7 +541,7 @@ static void check_screens(Caster *caster, uint64_t *seed) {
 
 static int64_t random_ray_count(void) {
   const char *text = getenv("TETCAST_RAYS");
-  return text ? (int64_t)strtod(text, NULL) : test_short() ? 20000 : 400000;
+  return text ? (int64_t)strtod(text, NULL) : test_short() ? 20000 : 200000;
 }
 
 static void run(Soup soup, double share) {

@@ -129,7 +129,7 @@ typedef struct Feature {
   TetcastShade shade;
   bool shadows;
   int rows;        /* 0: a transfer function of one dimension; else of so many rows */
-  int edges;       /* 1: an outline, and the boundary's triangles; 2: the boundary without its triangles */
+  int edges;       /* 1: the boundary's triangles; 2: the boundary without its triangles */
   bool part;       /* only the middle of rays counts */
   double adaptive; /* rays are cast where pixels differ by so much, from every fourth pixel on; 0: everywhere */
 } Feature;
@@ -174,10 +174,8 @@ static void set_rows(Tet *tet, const Feature *feature) {
 }
 
 static void set_lines(Tet *tet, int edges) {
-  static const double black[3] = {0, 0, 0};
   const TetcastBoundary boundary = {.opacity = 1, .colored = 1, .color = {1, 1, 1}, .edges = edges == 1};
   must(tetcast_scene_set_boundary(tet->scene, edges ? &boundary : NULL) == TETCAST_OK, "boundary");
-  must(tetcast_scene_set_outline(tet->scene, edges == 1 ? black : NULL) == TETCAST_OK, "outline");
 }
 
 /* Its plane goes through the middle and cuts off what is next to the camera. */
@@ -304,7 +302,7 @@ void job_features(const Job *job) {
       {.name = "adaptive to 0.01 from 4th pixels on", .transfer = &transfer_linear, .adaptive = 0.01},
       {.name = "a part of each ray", .transfer = &transfer_linear, .part = true},
       {.name = "boundary", .transfer = &clear, .edges = 2},
-      {.name = "boundary with edges and an outline", .transfer = &clear, .edges = 1},
+      {.name = "boundary with edges", .transfer = &clear, .edges = 1},
       {.name = "channel of depth", .transfer = &transfer_linear, .channels = TETCAST_CHANNEL_DEPTH},
       {.name = "channel of normals", .transfer = &transfer_linear, .channels = TETCAST_CHANNEL_NORMAL},
       {.name = "channel of cells", .transfer = &transfer_linear, .channels = TETCAST_CHANNEL_CELLS},

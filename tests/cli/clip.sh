@@ -7,7 +7,7 @@ states() { # FILE TEXT
   tr -d ' \n' <"$1" | grep -qF -- "$2" || fail "no '$2' in $1: $(cat "$1")"
 }
 vtu cube.vtu "$five_tetrahedra" 10 # s = x + 2 y + 3 z
-down='--eye 0.5,0.5,1.5 --ortho 1.2 --size 41x31 --array s'
+down='--eye 0.5,0.5,1.5 --ortho 1.2 --size 41x31 --array s --bare'
 
 # A half of the cube has the largest values that it has: x + 2 y + 3 z with z at most 1/2.
 accept render cube.vtu -o whole.png $down --blend maximum --range 0,6
@@ -36,7 +36,7 @@ accept render cube.vtu -o cells.png --array 'c d' --clip 1,1,1,1.1
 
 # In any unit.
 vtu large.vtu "$five_tetrahedra" 10 "${cube//1/1e30}"
-accept render large.vtu -o large.png --array s --eye 0.5e30,0.5e30,1.5e30 --ortho 1.2e30 --size 41x31 \
+accept render large.vtu -o large.png --array s --eye 0.5e30,0.5e30,1.5e30 --ortho 1.2e30 --size 41x31 --bare \
   --clip-box 0.2e30,0.8e30,-4e30,0.75e30,0.25e30,0.5e30
 same box.png large.png unit
 

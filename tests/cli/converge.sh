@@ -60,7 +60,7 @@ whole() {
 
 export LC_ALL=C
 for scene in smooth knots; do
-  accept converge cube.vtu --transfer $scene.json -o $scene --size 40x30 --repeat 2 $plots
+  accept converge cube.vtu --transfer $scene.json -o $scene --view -z --size 40x30 --repeat 2 $plots
   whole $scene samples stiffness time
   holds $scene 'integrator == "exact" && tolerance == 0 && study == "time" => max <= 1e-13 && bound > 0 && bound < 1e-10'
   holds $scene 'integrator == "exact" && tolerance == 0 => max <= 1e-12'
@@ -162,7 +162,7 @@ grep -q '\*\*Warning' overlap/report.md || fail 'the report does not warn'
 # along its lines by rays that all lie in its planes, first with values that neighbours share, then with values that they do not.
 vtu hexahedron.vtu '0 1 2 3 4 5 6 7' 12
 scalar='0 1 1 0 0 1 1 0' vtu hexahedron.vtu '0 1 2 3 4 5 6 7' 12
-accept converge hexahedron.vtu -o faces --size 32x24 --repeat 1 --no-plots --strict
+accept converge hexahedron.vtu -o faces --eye 0.5,0.5,3.8460652149512318 --size 32x24 --repeat 1 --no-plots --strict
 holds faces 'integrator == "exact" && tolerance == 0 && study == "time" => max <= 1e-13'
 grep -q 'of the rays run so' faces/report.md || fail 'rays in faces are not counted'
 lattice() { # of 4³ voxels in [0, 4]³, as an image
@@ -173,12 +173,12 @@ lattice() { # of 4³ voxels in [0, 4]³, as an image
   for ((i = 0; i < 64; i++)); do echo $((i * 37 % 64)); done
 }
 lattice >lattice.vtk
-accept converge lattice.vtk -o faces --array p --ortho 8 --size 8x8 --repeat 1 --no-plots --strict
+accept converge lattice.vtk -o faces --view -z --array p --ortho 8 --size 8x8 --repeat 1 --no-plots --strict
 holds faces 'integrator == "exact" && tolerance == 0 && study == "time" => max <= 1e-13'
 [ "$(sed -n 's/^\* \([0-9]*\) of the rays run so.*/\1/p' faces/report.md)" -ge 20 ] || fail 'most rays run in faces'
-warn 'could not be checked' converge lattice.vtk -o faces --array c --ortho 8 --size 4x4 --repeat 1 --no-plots
+warn 'could not be checked' converge lattice.vtk -o faces --view -z --array c --ortho 8 --size 4x4 --repeat 1 --no-plots
 grep -q 'were replaced by others' faces/report.md || fail 'replaced rays are not counted'
-accept converge lattice.vtk -o faces --array c --ortho 8 --size 12x12 --repeat 1 --no-plots --strict
+accept converge lattice.vtk -o faces --view -z --array c --ortho 8 --size 12x12 --repeat 1 --no-plots --strict
 holds faces 'integrator == "exact" && tolerance == 0 && study == "time" => max <= 1e-13'
 
 # What is refused, before anything is read; nothing appears.

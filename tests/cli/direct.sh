@@ -8,7 +8,7 @@ scalar='0 1 nan 2 nan 4 6 5' vtu nan.vtu "$five_tetrahedra" 10
 
 # With an emission of as much as the extinction, the radiance is the opacity: the picture of white dust.
 echo '{"color": [[0,1,1,1]], "extinction": [[0,0],[6,6]]}' >white.json
-accept render cube.vtu -o white.png --array s --transfer white.json --size 61x47 --pixel-type uint16 --background 0,0,0
+accept render cube.vtu -o white.png --array s --transfer white.json --size 61x47 --bare --pixel-type uint16 --background 0,0,0
 accept render cube.vtu -o dust.png --extinction s --emission s --size 61x47 --pixel-type uint16
 same dust.png white.png 'emission as extinction'
 accept render cube.vtu -o faces.png --extinction s --emission s --size 61x47 --pixel-type uint16 --traversal faces --threads 1
@@ -16,7 +16,7 @@ same faces.png white.png traversal
 # Without emission, what comes through of the white behind.
 accept render cube.vtu -o shadow.png --extinction s --size 61x47 --pixel-type uint16
 echo '{"color": [[0,0,0,0]], "extinction": [[0,0],[6,6]]}' >black.json
-accept render cube.vtu -o black.png --array s --transfer black.json --size 61x47 --pixel-type uint16
+accept render cube.vtu -o black.png --array s --transfer black.json --bare --background white --size 61x47 --pixel-type uint16
 same shadow.png black.png 'radiograph'
 # Cells, components, colour.
 accept render cube.vtu -o cells.png --extinction 'c d' --size 61x47
@@ -66,7 +66,7 @@ accept render cube.vtu -o glow.png --emission v:0 --size 30x20 --save-scene glow
 accept render --scene glow.json -o glow2.png
 same glow.png glow2.png 'background of a scene'
 accept render --scene glow.json -o other.png --array s
-accept render cube.vtu -o plain.png --array s --size 30x20 --background 0,0,0 --save-scene plain.json
+accept render cube.vtu -o plain.png --array s --size 30x20 --bare --background 0,0,0 --save-scene plain.json
 same other.png plain.png 'an array wins over a scene of coefficients'
 accept render --scene plain.json -o glow3.png --emission v:0
 same glow.png glow3.png 'coefficients win over a scene of an array'

@@ -43,8 +43,8 @@ accept render cube.vtu -o b.exr --size 9x9 --background 0,0,0 --quiet
 # Backgrounds by name and by digits.
 for pair in white=1,1,1 BLACK=0,0,0 red=1,0,0 '#f00=1,0,0' '#00FF00=0,1,0' '#0000ffff=0,0,1,1' transparent=0,0,0,0 '#f000=1,0,0,0' \
   '#33669980=0.2,0.4,0.6,0.50196078431372548'; do
-  accept render cube.vtu -o name.png --size 40x30 --background "${pair%=*}"
-  accept render cube.vtu -o numbers.png --size 40x30 --background "${pair#*=}"
+  accept render cube.vtu -o name.png --size 40x30 --bare --background "${pair%=*}"
+  accept render cube.vtu -o numbers.png --size 40x30 --bare --background "${pair#*=}"
   same name.png numbers.png "background ${pair%=*}"
 done
 echo '{"input": "cube.vtu", "output": "name.png", "size": [40, 30], "background": "#33669980"}' >named.json

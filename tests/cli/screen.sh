@@ -3,7 +3,7 @@
 . "$(dirname "$0")/lib.sh"
 needs vtk openimageio
 vtu cube.vtu "$five_tetrahedra" 10 # s = x + 2 y + 3 z
-view='--array s --eye 3,2,5 --size 61x43'
+view='--array s --eye 3,2,5 --size 61x43 --bare'
 
 # rays FILE: how many a run took.
 rays() { tr -d ' \n' <"$1" | sed 's/.*"rays":\([0-9]*\).*/\1/'; }
@@ -60,9 +60,9 @@ refuse 2 'normal: not possible' render cube.vtu -o a.exr --emission s --channels
 # ── lines ──
 
 accept render cube.vtu -o box.png $view --outline --save-scene box.json
-accept render cube.vtu -o other.png $view --outline black
+accept render cube.vtu -o other.png $view --outline 0.4,0.4,0.4
 same box.png other.png 'the colour by default'
-accept render --outline 0,0,0 cube.vtu $view -o other.png
+accept render --outline '#666' cube.vtu $view -o other.png
 same box.png other.png 'a colour as the next word'
 accept render --outline cube.vtu $view -o other.png # which is no colour
 same box.png other.png 'no colour as the next word'
@@ -70,13 +70,13 @@ accept render --scene box.json -o again.png
 same again.png box.png 'scene with an outline'
 differ box.png plain.png outline
 accept render cube.vtu -o dark.png $view --outline --background black
-accept render cube.vtu -o other.png $view --outline=white --background black
+accept render cube.vtu -o other.png $view --outline=0.75,0.75,0.75 --background black
 same dark.png other.png 'the colour on a dark background'
 accept render cube.vtu -o other.png --extinction s --outline
 accept render cube.vtu -o other.png --array s --blend maximum --outline
 accept render cube.vtu -o other.png --array s --blend additive --range 0,9 --outline
-refuse 2 'only with --range' render cube.vtu -o a.png --array s --blend additive --outline
-refuse 2 'not possible with --channels value' render cube.vtu -o a.exr --array s --blend maximum --outline --channels value
+accept render cube.vtu -o other.png --array s --blend additive --outline
+accept render cube.vtu -o a.exr --array s --blend maximum --outline --channels value
 refuse 2 'expected nothing, or a colour' render cube.vtu --outline=nocolour
 
 accept render cube.vtu -o edges.png $view --surface white --edges red --save-scene edges.json

@@ -58,7 +58,7 @@ for file in nan touched; do
   warn 'values are NaN or infinite' render $file.vtu --array s -o a.png $small
 done
 # It is there, but of the background's colour.
-says "${nothing}what is there has the colours of the background" cube.vtu --transfer white.json
+says "${nothing}what is there has the colours of the background" cube.vtu --transfer white.json --background white
 accept render cube.vtu -o a.png $small --transfer white.json --background black
 accept render cube.vtu -o a.png $small --transfer white.json --quiet
 accept render cube.vtu -o a.png $small --transfer white.json --background transparent

@@ -53,7 +53,7 @@ size=$(number "sqrt(($x1-($x0))^2+($y1-($y0))^2+($z1-($z0))^2)")
 at() { number "$low+($1)*($high-($low))"; } # a part of the range
 
 # Brute force takes its time: of large meshes, each so-many-th pixel, no divisor of the width.
-every=$((cells / 60000 + 1))
+every=$((cells / 15000 + 1))
 while [ $every -gt 1 ] && { [ $((every % 2)) = 0 ] || [ $((every % 3)) = 0 ]; }; do every=$((every + 1)); done
 if [ -n "${TETCAST_TEST_LONG-}" ]; then every=1; fi
 

@@ -155,11 +155,11 @@ static void edges_of_the_box_lie_where_they_should(void **state) {
     TetcastRenderDesc desc = render_desc();
     desc.stop = i / 6 == 1 ? &array : NULL;
     set_transfer(&world, extinctions[i / 6]);
-    assert_int_equal(tetcast_scene_set_outline(world.scene, NULL), TETCAST_OK);
     TetcastFrame *plain = shoot(&world, camera, &desc, TETCAST_TYPE_FLOAT64);
-    assert_int_equal(tetcast_scene_set_outline(world.scene, color), TETCAST_OK);
     TetcastFrame *frame = shoot(&world, camera, &desc, TETCAST_TYPE_FLOAT64),
                  *floats = shoot(&world, camera, &desc, TETCAST_TYPE_FLOAT32);
+    assert_int_equal(tetcast_scene_draw_outline(world.scene, camera, &desc, color, frame), TETCAST_OK);
+    assert_int_equal(tetcast_scene_draw_outline(world.scene, camera, &desc, color, floats), TETCAST_OK);
     Near *near = find_near(camera);
     const double *before = tetcast_frame_pixels(plain), *after = tetcast_frame_pixels(frame);
     int met = 0;
@@ -183,25 +183,25 @@ static void an_outline_goes_with_other_kinds_of_scene(void **state) {
   World world;
   world_begin(&world, 2, 0, 1, TETCAST_TRAVERSAL_SHELL);
   set_values(&world, world.cube.values, TETCAST_POINT);
-  assert_int_equal(tetcast_scene_set_outline(world.scene, color), TETCAST_OK);
   assert_int_equal(tetcast_scene_set_blend(world.scene, TETCAST_BLEND_MAXIMUM), TETCAST_OK);
   const TetcastRenderDesc desc = render_desc();
   TetcastFrame *frame = shoot(&world, &camera, &desc, TETCAST_TYPE_FLOAT64);
+  assert_int_equal(tetcast_scene_draw_outline(world.scene, &camera, NULL, color, frame), TETCAST_OK);
   const double *pixels = tetcast_frame_pixels(frame);
   int blue = 0;
   for (int p = 0; p < PIXELS; ++p)
     blue += pixels[4 * p + 2] > pixels[4 * p];
   assert_true(blue > 40);
-  tetcast_frame_destroy(&frame);
-  TetcastFrameDesc value = tetcast_frame_desc_default();
-  value.width = value.height = 4;
-  value.channels = TETCAST_CHANNEL_VALUE;
-  assert_int_equal(tetcast_frame_create(world.fixture.context, &value, &frame), TETCAST_OK);
-  assert_int_equal(tetcast_scene_render(world.scene, &camera, NULL, frame, NULL), TETCAST_ERROR_ARGUMENT);
-  assert_non_null(strstr(world.fixture.message, "no channel value"));
-  tetcast_frame_destroy(&frame);
   const double bad[3] = {0, -1, 0};
-  assert_int_equal(tetcast_scene_set_outline(world.scene, bad), TETCAST_ERROR_ARGUMENT);
+  assert_int_equal(tetcast_scene_draw_outline(world.scene, &camera, NULL, bad, frame), TETCAST_ERROR_ARGUMENT);
+  const TetcastCamera nowhere = camera_of(0.5, 0.5, 4, 0.5, 0.5, 4);
+  assert_int_equal(tetcast_scene_draw_outline(world.scene, &nowhere, NULL, color, frame), TETCAST_ERROR_ARGUMENT);
+  const double near = 1;
+  const TetcastArray few = {&near, TETCAST_TYPE_FLOAT64, 1, 0};
+  TetcastRenderDesc stopping = render_desc();
+  stopping.stop = &few;
+  assert_int_equal(tetcast_scene_draw_outline(world.scene, &camera, &stopping, color, frame), TETCAST_ERROR_ARGUMENT);
+  tetcast_frame_destroy(&frame);
   world_end(&world);
 }
 

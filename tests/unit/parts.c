@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Pictures of parts of rays: composited front to back they are the whole picture, of every kind of scene, whatever the
- * rays meet; a part is what a clip leaves there; and what the library says where it can't. */
+ * rays meet; a part is what a clip leaves there; rows are those of the whole; and what the library says where it can't.
+ */
 #include "world.h"
 
 enum { W = 37, H = 29, PIXELS = W * H, PARTS = 7 };
@@ -220,6 +221,40 @@ static void a_start_is_a_clip(void **state) {
   world_end(&world);
 }
 
+/* Rows of a picture, from wherever and however many, are those of the whole one, to the bit. */
+static void rows_are_those_of_the_whole(void **state) {
+  (void)state;
+  World world;
+  world_begin(&world, 3, 0.2, 1, TETCAST_TRAVERSAL_SHELL);
+  set_kind(&world, TETCAST_POINT);
+  const double color[3] = {1, 0, 0};
+  const TetcastCamera camera = camera_number(1);
+  TetcastRenderDesc desc = render_desc();
+  TetcastFrame *whole = shoot(&world, &camera, &desc, TETCAST_CHANNEL_CELLS, 1);
+  assert_int_equal(tetcast_scene_draw_outline(world.scene, &camera, &desc, color, whole), TETCAST_OK);
+  static const int64_t parts[][2] = {{0, 1}, {0, 16}, {3, 17}, {H - 1, 1}, {0, H}};
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; ++i) {
+    TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
+    frame_desc.width = W;
+    frame_desc.height = parts[i][1];
+    frame_desc.channels = TETCAST_CHANNEL_CELLS;
+    TetcastFrame *frame = NULL;
+    assert_int_equal(tetcast_frame_create(world.fixture.context, &frame_desc, &frame), TETCAST_OK);
+    desc.picture_height = H;
+    desc.first_row = parts[i][0];
+    assert_int_equal(tetcast_scene_render(world.scene, &camera, &desc, frame, NULL), TETCAST_OK);
+    assert_int_equal(tetcast_scene_draw_outline(world.scene, &camera, &desc, color, frame), TETCAST_OK);
+    const double *pixels = (const double *)tetcast_frame_pixels(whole) + 4 * W * parts[i][0];
+    const double *cells = (const double *)tetcast_frame_channel(whole, TETCAST_CHANNEL_CELLS) + W * parts[i][0];
+    assert_memory_equal(tetcast_frame_pixels(frame), pixels, sizeof(double) * 4 * W * (size_t)parts[i][1]);
+    assert_memory_equal(tetcast_frame_channel(frame, TETCAST_CHANNEL_CELLS), cells,
+                        sizeof(double) * W * (size_t)parts[i][1]);
+    tetcast_frame_destroy(&frame);
+  }
+  tetcast_frame_destroy(&whole);
+  world_end(&world);
+}
+
 static void what_cannot_be_is_refused(void **state) {
   (void)state;
   World world;
@@ -239,6 +274,21 @@ static void what_cannot_be_is_refused(void **state) {
   start.count = 3;
   assert_int_equal(tetcast_scene_render(world.scene, &camera, &render, frame, NULL), TETCAST_ERROR_ARGUMENT);
   assert_non_null(strstr(world.fixture.message, "start: 3 distances for a frame of 2 × 2 pixels"));
+  static const int64_t rows[][2] = {{1, 0}, {5, 4}, {5, -1}, {-5, 0}, {1 << 21, 0}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
+    render = tetcast_render_desc_default();
+    render.picture_height = rows[i][0];
+    render.first_row = rows[i][1];
+    assert_int_equal(tetcast_scene_render(world.scene, &camera, &render, frame, NULL), TETCAST_ERROR_ARGUMENT);
+    assert_non_null(strstr(world.fixture.message, "2 rows from row"));
+  }
+  render.picture_height = 5;
+  render.first_row = 0;
+  distances[2] = 0;
+  start.count = 4;
+  render.stop = &start;
+  assert_int_equal(tetcast_scene_render(world.scene, &camera, &render, frame, NULL), TETCAST_ERROR_ARGUMENT);
+  assert_string_equal(world.fixture.message, "rows of a picture: not possible with stop, start or adaptive");
   tetcast_frame_destroy(&frame);
   world_end(&world);
 }
@@ -247,7 +297,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(parts_of_the_volume_are_the_whole),   cmocka_unit_test(parts_of_surfaces_are_the_whole),
       cmocka_unit_test(parts_of_coefficients_are_the_whole), cmocka_unit_test(a_start_is_a_clip),
-      cmocka_unit_test(what_cannot_be_is_refused),
+      cmocka_unit_test(rows_are_those_of_the_whole),         cmocka_unit_test(what_cannot_be_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -201,6 +201,13 @@ static void test_series(void **state) {
   desc = tetcast_dataset_desc_default();
   desc.merge_tolerance = NAN;
   assert_int_equal(tetcast_dataset_read(fixture->context, paths[0], &desc, &dataset), TETCAST_ERROR_ARGUMENT);
+  static const double factors[] = {0, -1, NAN, INFINITY};
+  for (int i = 0; i < 4; ++i) {
+    desc = tetcast_dataset_desc_default();
+    desc.stretch[i % 3] = factors[i];
+    assert_int_equal(tetcast_dataset_read(fixture->context, paths[0], &desc, &dataset), TETCAST_ERROR_ARGUMENT);
+    assert_non_null(strstr(fixture->message, "is not a finite number above 0"));
+  }
 }
 
 static void test_exodus_steps(void **state) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Reading surfaces. */
+/* Reading surfaces, and XML that is none. */
 #include <math.h>
 
 #include "common.h"
@@ -226,8 +226,37 @@ static void test_others_files(void **state) {
   }
 }
 
+static void count_element(void *user, int depth, const char *name, const char *const *attributes) {
+  int *counts = user;
+  ++counts[depth];
+  for (; *attributes; attributes += 2)
+    counts[3] += !strcmp(name, "b") && !strcmp(attributes[0], "x") && !strcmp(attributes[1], "1 & 2");
+}
+
+/* Elements of any XML file come with their depth and attributes. */
+static void test_elements(void **state) {
+  Fixture *fixture = *state;
+  int counts[4] = {0};
+  assert_int_equal(tetcast_xml_read(fixture->context,
+                                    text_file(fixture, "a.xml", "<a>text<b x='1 &amp; 2' y='3'/><b><c/></b></a>"),
+                                    count_element, counts),
+                   TETCAST_OK);
+  assert_true(counts[0] == 1 && counts[1] == 2 && counts[2] == 1 && counts[3] == 1);
+  const char *const damaged[] = {"", "<a>", "<a></b>", "a", "<a b></a>"};
+  for (size_t i = 0; i < sizeof damaged / sizeof *damaged; ++i) {
+    fixture->errors = 0;
+    assert_int_equal(tetcast_xml_read(fixture->context, text_file(fixture, "a.xml", damaged[i]), count_element, counts),
+                     TETCAST_ERROR_DATA);
+    assert_int_equal(fixture->errors, 1);
+  }
+  assert_int_equal(tetcast_xml_read(fixture->context, in_folder(fixture, "missing.xml"), count_element, counts),
+                   TETCAST_ERROR_IO);
+  assert_int_equal(tetcast_xml_read(fixture->context, NULL, count_element, counts), TETCAST_ERROR_ARGUMENT);
+  assert_int_equal(tetcast_xml_read(fixture->context, "a.xml", NULL, counts), TETCAST_ERROR_ARGUMENT);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {TEST(test_formats), TEST(test_binary_formats), TEST(test_polygons),
-                                     TEST(test_defects), TEST(test_others_files)};
+                                     TEST(test_defects), TEST(test_others_files),   TEST(test_elements)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
 #include <tetcast/version.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <cstring>
@@ -18,6 +19,7 @@
 #include "failure.hpp"
 #include "io/floating.hpp"
 #include "output.hpp"
+#include "overlay.hpp"
 
 using OIIO::ImageOutput;
 using OIIO::ImageSpec;
@@ -224,20 +226,46 @@ template <class T> T quantize(double value, double top) {
   return static_cast<T>(value > 0 ? std::floor(std::min(value, 1.0) * top + 0.5) : 0.0); // NaN becomes 0
 }
 
-// Composites rows [begin, end) over the background. With an alpha channel colours are not premultiplied, as PNG wants
-// them; without one a translucent background itself lies over black.
+// What lies behind the picture, and over it.
+struct Scenery {
+  TetcastImageDesc desc;
+  std::vector<tetcast::Overlay> overlays;
+  int64_t height; // of the picture
+
+  // The background of a row.
+  std::array<double, 4> behind(int64_t y) const {
+    std::array<double, 4> color;
+    const double below = desc.background_shaded && height > 1 ? double(y) / double(height - 1) : 0;
+    for (size_t k = 0; k < 4; k++)
+      color[k] = below > 0 ? desc.background[k] * (1 - below) + desc.background_below[k] * below : desc.background[k];
+    color[3] = desc.background[3];
+    return color;
+  }
+};
+
+// Composites rows [begin, end) over the background, and the overlay over them. With an alpha channel colours are not
+// premultiplied, as PNG wants them; without one a translucent background itself lies over black.
 template <class T>
-void integer_rows(const Pixels &pixels, int64_t begin, int64_t end, int channels, const double background[4], T *out) {
-  const double top = sizeof(T) == 1 ? 255.0 : 65535.0;
+void integer_rows(const Pixels &pixels, int64_t begin, int64_t end, int channels, const Scenery &scenery, int64_t first,
+                  T *out) {
+  const double top = sizeof(T) == 1 ? 255.0 : 65535.0, gain = std::exp2(scenery.desc.exposure);
   for (int64_t y = begin; y < end; y++) {
+    const std::array<double, 4> background = scenery.behind(first + y);
     for (int64_t x = 0; x < pixels.width; x++, out += channels) {
       const double behind = (1 - component(pixels, y, 4 * x + 3)) * background[3];
-      const double alpha = component(pixels, y, 4 * x + 3) + behind;
-      const double scale = channels == 4 ? (alpha > 0 ? 1 / alpha : 0) : 1;
-      for (int c = 0; c < 3; c++)
-        out[c] = quantize<T>((component(pixels, y, 4 * x + c) + behind * background[c]) * scale, top);
+      double rgba[4] = {0, 0, 0, component(pixels, y, 4 * x + 3) + behind};
+      for (size_t c = 0; c < 3; c++)
+        rgba[c] = component(pixels, y, 4 * x + int64_t(c)) * gain + behind * background[c];
+      for (const tetcast::Overlay &overlay : scenery.overlays) {
+        const float *over = overlay.at(x, first + y);
+        for (size_t c = 0; over && c < 4; c++)
+          rgba[c] = double(over[c]) + (1 - double(over[3])) * rgba[c];
+      }
+      const double scale = channels == 4 ? (rgba[3] > 0 ? 1 / rgba[3] : 0) : 1;
+      for (size_t c = 0; c < 3; c++)
+        out[c] = quantize<T>(rgba[c] * scale, top);
       if (channels == 4)
-        out[3] = quantize<T>(alpha, top);
+        out[3] = quantize<T>(rgba[3], top);
     }
   }
 }
@@ -259,7 +287,8 @@ void many_channel_rows(const Pixels &pixels, int64_t begin, int64_t end, unsigne
   }
 }
 
-bool write_rows(ImageOutput &output, const Pixels &pixels, const double background[4]) {
+// Writes the pixels as the rows from `first` on.
+bool write_rows(ImageOutput &output, const Pixels &pixels, int64_t first, const Scenery &scenery) {
   const ImageSpec &spec = output.spec();
   const bool floating = is_float(spec.format);
   const TypeDesc frame_type = pixels.is_double ? TypeDesc::DOUBLE : TypeDesc::FLOAT;
@@ -272,17 +301,17 @@ bool write_rows(ImageOutput &output, const Pixels &pixels, const double backgrou
     bool done;
     if (many) {
       many_channel_rows(pixels, begin, end, batch.data());
-      done = output.write_scanlines(int(begin), int(end), 0, frame_type, batch.data());
+      done = output.write_scanlines(int(first + begin), int(first + end), 0, frame_type, batch.data());
     } else if (floating) {
       const char *row = static_cast<const char *>(pixels.data) + begin * pixels.row_stride;
-      done = output.write_scanlines(int(begin), int(end), 0, frame_type, row, OIIO::stride_t(4 * frame_type.size()),
-                                    pixels.row_stride);
+      done = output.write_scanlines(int(first + begin), int(first + end), 0, frame_type, row,
+                                    OIIO::stride_t(4 * frame_type.size()), pixels.row_stride);
     } else {
       if (spec.format.size() == 1)
-        integer_rows(pixels, begin, end, spec.nchannels, background, batch.data());
+        integer_rows(pixels, begin, end, spec.nchannels, scenery, first, batch.data());
       else
-        integer_rows(pixels, begin, end, spec.nchannels, background, reinterpret_cast<uint16_t *>(batch.data()));
-      done = output.write_scanlines(int(begin), int(end), 0, spec.format, batch.data());
+        integer_rows(pixels, begin, end, spec.nchannels, scenery, first, reinterpret_cast<uint16_t *>(batch.data()));
+      done = output.write_scanlines(int(first + begin), int(first + end), 0, spec.format, batch.data());
     }
     if (!done)
       return false;
@@ -315,7 +344,20 @@ void name_channels(const Pixels &pixels, TypeDesc type, ImageSpec &spec) {
   }
 }
 
-ImageSpec picture_spec(const ImageOutput &output, const Pixels &pixels, TypeDesc type, bool opaque) {
+// What colours mean. Integer pixels are shown as they are. OpenImageIO's writer of EXR has no place for it but words,
+// and that of TIFF writes it in a way by which files that go through a proxy lose their directory.
+void state_colors(const Pixels &pixels, TypeDesc type, bool linear, const std::string &format, ImageSpec &spec) {
+  if (pixels.extras_only)
+    return;
+  linear = linear && is_float(type);
+  if (format == "tiff" || format == "openexr")
+    spec.attribute("ImageDescription", linear ? "colours are linear radiance" : "colours are display values (sRGB)");
+  else
+    spec.attribute("oiio:ColorSpace", linear ? "Linear" : "sRGB");
+}
+
+ImageSpec picture_spec(const ImageOutput &output, const Pixels &pixels, TypeDesc type, const TetcastImageDesc &desc) {
+  const bool opaque = desc.background[3] >= 1;
   const bool alpha = output.supports("alpha") && (is_float(type) || !opaque);
   ImageSpec spec(int(pixels.width), int(pixels.height), alpha ? 4 : 3, type);
   spec.attribute("Software", "tetcast " TETCAST_VERSION_STRING);
@@ -324,6 +366,7 @@ ImageSpec picture_spec(const ImageOutput &output, const Pixels &pixels, TypeDesc
   if (alpha && !is_float(type))
     spec.attribute("oiio:UnassociatedAlpha", 1);
   const std::string format = output.format_name();
+  state_colors(pixels, type, desc.linear, format, spec);
   // The same picture gives the same file. Left out, the time of writing would be put in; these are the blanks for
   // "unknown".
   if (format == "tiff" || format == "openexr")
@@ -338,23 +381,52 @@ ImageSpec picture_spec(const ImageOutput &output, const Pixels &pixels, TypeDesc
   return spec;
 }
 
-// Writes the pixels beside `path`; `publish` makes them the file.
-void write_picture(TetcastContext *context, const char *path, const Pixels &pixels, const TetcastImageDesc &desc,
-                   bool publish) {
+Scenery make_scenery(TetcastContext *context, const char *path, int64_t width, int64_t height,
+                     const TetcastImageDesc &desc, bool floating) {
+  Scenery scenery = {desc, {}, height};
+  if (floating)
+    return scenery;
+  const double *b = desc.background;
+  const double bright = 1 - b[3] + b[3] * (0.2126 * b[0] + 0.7152 * b[1] + 0.0722 * b[2]);
+  const float ink = bright < 0.5 ? 1 : 0.1f;
+  std::string problem;
+  if (desc.legend)
+    scenery.overlays.push_back(tetcast::draw_legend(*desc.legend, width, height, ink, problem));
+  for (int i = 0; i < desc.caption_count; i++)
+    scenery.overlays.push_back(tetcast::draw_caption(desc.captions[i], width, height, ink, problem));
+  if (!problem.empty())
+    tetcast_context_message(context, TETCAST_SEVERITY_WARNING, "image '%s': the picture has no words: %s", path,
+                            problem.c_str());
+  return scenery;
+}
+
+// A file under way, beside `path`.
+struct Writing {
   tetcast::NewFile file; // outlives the proxy, which outlives the output
   std::unique_ptr<tetcast::CheckedProxy> proxy;
   std::unique_ptr<ImageOutput> output;
+  std::unique_ptr<Scenery> scenery;
+  TypeDesc type;
+};
+
+// Opens the file of a picture with `height` rows, of which these pixels are the first ones.
+void begin_picture(TetcastContext *context, const char *path, const Pixels &pixels, int64_t height,
+                   const TetcastImageDesc &desc, Writing &writing) {
+  std::unique_ptr<ImageOutput> &output = writing.output;
   const Format &format = find_format(context, path, output);
-  if (std::max(pixels.width, pixels.height) > format.limit)
+  if (std::max(pixels.width, height) > format.limit)
     fail(context, TETCAST_ERROR_ARGUMENT, path,
          "the format holds at most " + std::to_string(format.limit) + " pixels a side");
   output->threads(tetcast_context_threads(context));
-  if (const int error = file.open(path))
+  if (const int error = writing.file.open(path))
     fail(context, TETCAST_ERROR_IO, path, error_text(error));
-  proxy = std::make_unique<tetcast::CheckedProxy>(file.file(), file.temporary());
-  TypeDesc type = requested_type(desc.pixel_type, format, pixels);
+  writing.proxy = std::make_unique<tetcast::CheckedProxy>(writing.file.file(), writing.file.temporary());
+  const bool whole = height == pixels.height;
+  TypeDesc type = !whole && desc.pixel_type == TETCAST_PIXEL_DEFAULT ? TypeDesc(format.standard)
+                                                                     : requested_type(desc.pixel_type, format, pixels);
   if (pixels.extras_only && type == TypeDesc::HALF && output->supports("channelformats"))
     type = TypeDesc::FLOAT; // as each of them is
+  writing.type = type;
   if (!pixels.extras.empty() && (!is_float(type) || !output->supports("nchannels")))
     fail(context, TETCAST_ERROR_ARGUMENT, path,
          std::string("the frame has the channel ") + pixels.extras[0].name +
@@ -366,36 +438,47 @@ void write_picture(TetcastContext *context, const char *path, const Pixels &pixe
   const std::string reason_against = unfit(format.name, type, pixels, opaque);
   if (!reason_against.empty())
     fail(context, TETCAST_ERROR_ARGUMENT, path, reason_against);
-  ImageSpec spec = picture_spec(*output, pixels, type, opaque);
-  void *pointer = static_cast<OIIO::Filesystem::IOProxy *>(proxy.get());
+  ImageSpec spec = picture_spec(*output, pixels, type, desc);
+  spec.height = spec.full_height = int(height);
+  void *pointer = static_cast<OIIO::Filesystem::IOProxy *>(writing.proxy.get());
   spec.attribute("oiio:ioproxy", TypeDesc::PTR, &pointer);
 
-  bool done = output->open(file.temporary(), spec);
-  if (done) {
-    if (output->spec().format != type) {            // what a format does that can't hold the type
-      write_rows(*output, pixels, desc.background); // libpng would print about a file without pixels
-      output->close();
-      (void)output->geterror();
-      fail(context, TETCAST_ERROR_ARGUMENT, path,
-           std::string("the format cannot hold pixels of type ") + type_name(desc.pixel_type));
-    }
-    if (!output->supports("alpha") && (is_float(type) || !opaque))
-      tetcast_context_message(context, TETCAST_SEVERITY_WARNING,
-                              "image '%s': the format has no alpha; the picture lies over black", path);
-    done = write_rows(*output, pixels, desc.background);
-    done = output->close() && done;
+  writing.scenery = std::make_unique<Scenery>(make_scenery(context, path, pixels.width, height, desc, is_float(type)));
+  const bool done = output->open(writing.file.temporary(), spec);
+  if (!done)
+    tetcast::check_written(context, path, output->geterror(), writing.proxy->error_number(), done);
+  if (output->spec().format != type) {                // what a format does that can't hold the type
+    write_rows(*output, pixels, 0, *writing.scenery); // libpng would print about a file without pixels
+    output->close();
+    (void)output->geterror();
+    fail(context, TETCAST_ERROR_ARGUMENT, path,
+         std::string("the format cannot hold pixels of type ") + type_name(desc.pixel_type));
   }
-  tetcast::check_written(context, path, output->geterror(), proxy->error_number(), done);
-  output.reset();
+  if (!output->supports("alpha") && (is_float(type) || !opaque))
+    tetcast_context_message(context, TETCAST_SEVERITY_WARNING,
+                            "image '%s': the format has no alpha; the picture lies over black", path);
+}
+
+// Closes the file, `done` being whether all went well so far; `publish` makes it appear.
+void end_picture(TetcastContext *context, const char *path, Writing &writing, bool done, bool publish) {
+  done = writing.output->close() && done;
+  tetcast::check_written(context, path, writing.output->geterror(), writing.proxy->error_number(), done);
+  writing.output.reset();
   if (publish)
-    if (const int error = file.publish())
+    if (const int error = writing.file.publish())
       fail(context, TETCAST_ERROR_IO, path, error_text(error));
 }
 
-TetcastStatus guarded(TetcastContext *context, const char *path, const Pixels &pixels, const TetcastImageDesc *given,
-                      bool publish) {
-  const FloatingPoint guard;
-  const TetcastImageDesc desc = given ? *given : tetcast_image_desc_default();
+void write_picture(TetcastContext *context, const char *path, const Pixels &pixels, const TetcastImageDesc &desc,
+                   bool publish) {
+  Writing writing;
+  begin_picture(context, path, pixels, pixels.height, desc, writing);
+  const bool done = write_rows(*writing.output, pixels, 0, *writing.scenery);
+  end_picture(context, path, writing, done, publish);
+}
+
+TetcastStatus check_desc(TetcastContext *context, const char *path, const Pixels &pixels, const TetcastImageDesc &desc,
+                         bool publish) {
   if (desc.cookie != desc_cookie)
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
                                  "the image description was not made by tetcast_image_desc_default()");
@@ -409,10 +492,36 @@ TetcastStatus guarded(TetcastContext *context, const char *path, const Pixels &p
   if (desc.channels_only && pixels.extras.empty() && publish)
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
                                  "an image of a frame's channels only, but it has none");
+  for (double value : desc.background_below)
+    if (desc.background_shaded && !(value >= 0 && value <= 1))
+      return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "background component %g is outside [0, 1]", value);
   for (double value : desc.background)
     if (!(value >= 0 && value <= 1))
       return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "background component %g is outside [0, 1]", value);
+  if (!std::isfinite(desc.exposure))
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT, "the exposure %g is not a finite number",
+                                 desc.exposure);
+  return TETCAST_OK;
+}
+
+TetcastStatus guarded(TetcastContext *context, const char *path, const Pixels &pixels, const TetcastImageDesc *given,
+                      bool publish) {
+  const FloatingPoint guard;
+  const TetcastImageDesc desc = given ? *given : tetcast_image_desc_default();
+  const TetcastStatus status = check_desc(context, path, pixels, desc, publish);
+  if (status != TETCAST_OK)
+    return status;
   return tetcast::guard_writing(context, path, [&] { write_picture(context, path, pixels, desc, publish); });
+}
+
+Pixels pixels_of(const TetcastFrame *frame, const TetcastImageDesc *desc) {
+  return {tetcast_frame_pixels(frame),
+          tetcast_frame_width(frame),
+          tetcast_frame_height(frame),
+          tetcast_frame_row_stride(frame),
+          tetcast_frame_type(frame) == TETCAST_TYPE_FLOAT64,
+          extras_of(frame, desc),
+          desc && desc->channels_only};
 }
 
 } // namespace
@@ -425,6 +534,12 @@ TetcastImageDesc tetcast_image_desc_default(void) {
   desc.channel_count = 0;
   for (double &value : desc.background)
     value = 1; // opaque white
+  desc.background_shaded = 0;
+  for (double &value : desc.background_below)
+    value = 1;
+  desc.legend = nullptr;
+  desc.captions = nullptr;
+  desc.caption_count = 0;
   return desc;
 }
 
@@ -433,14 +548,103 @@ TetcastStatus tetcast_image_write(TetcastContext *context, const char *path, con
   if (!context || !path || !frame)
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
                                  "tetcast_image_write: context, path and frame are needed");
-  const Pixels pixels = {tetcast_frame_pixels(frame),
-                         tetcast_frame_width(frame),
-                         tetcast_frame_height(frame),
-                         tetcast_frame_row_stride(frame),
-                         tetcast_frame_type(frame) == TETCAST_TYPE_FLOAT64,
-                         extras_of(frame, desc),
-                         desc && desc->channels_only};
-  return guarded(context, path, pixels, desc, true);
+  return guarded(context, path, pixels_of(frame, desc), desc, true);
+}
+
+struct TetcastImage {
+  TetcastContext *context;
+  std::string path;
+  TetcastImageDesc desc;
+  std::vector<TetcastChannel> channels; // which the desc points to
+  Writing writing;
+  int64_t width, height, rows; // rows: written so far
+  int channel_count;
+  bool is_double, failed;
+};
+
+TetcastStatus tetcast_image_begin(TetcastContext *context, const char *path, const TetcastFrame *frame, int64_t height,
+                                  const TetcastImageDesc *desc, TetcastImage **image) {
+  const FloatingPoint guard;
+  if (image)
+    *image = nullptr;
+  if (!context || !path || !frame || !image)
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
+                                 "tetcast_image_begin: context, path, frame and image are needed");
+  const TetcastImageDesc all = desc ? *desc : tetcast_image_desc_default();
+  return tetcast::guard_writing(context, path, [&] {
+    const Pixels pixels = pixels_of(frame, &all);
+    const std::string extension = extension_of(path);
+    if (check_desc(context, path, pixels, all, true) != TETCAST_OK)
+      throw tetcast::Failure{TETCAST_ERROR_ARGUMENT};
+    if (extension != "png" && extension != "exr" && extension != "tif" && extension != "tiff")
+      fail(context, TETCAST_ERROR_ARGUMENT, path, "only .png, .exr and .tif are written in bands of rows");
+    if (height < pixels.height || height > 1 << 20)
+      fail(context, TETCAST_ERROR_ARGUMENT, path, "the picture's height is not that of a picture with this band");
+    auto result = std::make_unique<TetcastImage>();
+    result->context = context;
+    result->path = path;
+    result->desc = all;
+    if (all.channels)
+      result->channels.assign(all.channels, all.channels + all.channel_count);
+    result->desc.channels = all.channels ? result->channels.data() : nullptr;
+    result->width = pixels.width;
+    result->height = height;
+    result->channel_count = pixels.channels();
+    result->is_double = pixels.is_double;
+    begin_picture(context, path, pixels, height, result->desc, result->writing);
+    *image = result.release();
+  });
+}
+
+TetcastStatus tetcast_image_add(TetcastImage *image, const TetcastFrame *frame) {
+  const FloatingPoint guard;
+  if (!image || !frame)
+    return tetcast_context_error(image ? image->context : nullptr, TETCAST_ERROR_ARGUMENT,
+                                 "tetcast_image_add: image and frame are needed");
+  const char *path = image->path.c_str();
+  const TetcastStatus status = tetcast::guard_writing(image->context, path, [&] {
+    const Pixels pixels = pixels_of(frame, &image->desc);
+    const int64_t end = image->rows + pixels.height;
+    if (image->failed || pixels.width != image->width || pixels.is_double != image->is_double ||
+        pixels.channels() != image->channel_count || end > image->height ||
+        (end < image->height && pixels.height % batch_rows != 0))
+      fail(image->context, TETCAST_ERROR_ARGUMENT, path, "the frame is not the next band of the picture");
+    const std::string reason =
+        unfit(image->writing.output->format_name(), image->writing.type, pixels, image->desc.background[3] >= 1);
+    if (!reason.empty())
+      fail(image->context, TETCAST_ERROR_ARGUMENT, path, reason);
+    const bool done = write_rows(*image->writing.output, pixels, image->rows, *image->writing.scenery);
+    image->rows = end;
+    if (!done || image->writing.proxy->error_number() != 0)
+      tetcast::check_written(image->context, path, image->writing.output->geterror(),
+                             image->writing.proxy->error_number(), done);
+  });
+  image->failed = image->failed || status != TETCAST_OK;
+  return status;
+}
+
+TetcastStatus tetcast_image_end(TetcastImage **image) {
+  const FloatingPoint guard;
+  if (!image || !*image)
+    return TETCAST_ERROR_ARGUMENT;
+  const std::unique_ptr<TetcastImage> owned(*image);
+  *image = nullptr;
+  const char *path = owned->path.c_str();
+  return tetcast::guard_writing(owned->context, path, [&] {
+    if (owned->failed || owned->rows < owned->height)
+      fail(owned->context, TETCAST_ERROR_ARGUMENT, path, "rows of the picture are missing");
+    end_picture(owned->context, path, owned->writing, true, true);
+  });
+}
+
+void tetcast_image_destroy(TetcastImage **image) {
+  const FloatingPoint guard;
+  if (!image || !*image)
+    return;
+  (*image)->writing.output->close(); // as destructors would, but without a word about missing rows
+  (void)(*image)->writing.output->geterror();
+  delete *image;
+  *image = nullptr;
 }
 
 TetcastStatus tetcast_image_check(TetcastContext *context, const char *path, const TetcastImageDesc *desc) {

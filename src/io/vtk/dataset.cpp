@@ -27,6 +27,27 @@ static void take_points(vtkUnstructuredGrid *grid, TetcastDataset *dataset) {
   }
 }
 
+template <typename T> static void stretch(T *values, int64_t count, const double factors[3], const char *path) {
+  for (int64_t i = 0; i < 3 * count; ++i) {
+    const T value = static_cast<T>(static_cast<double>(values[i]) * factors[i % 3]);
+    if (!std::isfinite(value))
+      fail(TETCAST_ERROR_DATA, "%s: point %lld: coordinate %c is %g, and times %g more than its type holds", path,
+           static_cast<long long>(i / 3), "xyz"[i % 3], static_cast<double>(values[i]), factors[i % 3]);
+    values[i] = value;
+  }
+}
+
+static void stretch_points(const double factors[3], TetcastDataset *dataset) {
+  const TetcastArray view = view_of(dataset->points);
+  if (factors[0] == 1 && factors[1] == 1 && factors[2] == 1)
+    return;
+  void *values = dataset->points->GetVoidPointer(0);
+  if (view.type == TETCAST_TYPE_FLOAT32)
+    stretch(static_cast<float *>(values), view.count, factors, dataset->path.c_str());
+  else
+    stretch(static_cast<double *>(values), view.count, factors, dataset->path.c_str());
+}
+
 static void take_arrays(vtkDataSetAttributes *attributes, TetcastAssociation association, int64_t count,
                         TetcastDataset *dataset) {
   for (int i = 0; i < attributes->GetNumberOfArrays(); ++i) {
@@ -206,6 +227,7 @@ static void read_dataset(TetcastContext *context, const char *path, const Tetcas
   dataset->point_count = points + pieces.ghost_points + pieces.nonfinite_points + pieces.merged_points;
   dataset->cell_count = cells + pieces.ghost_cells + pieces.nonfinite_cells;
   take_points(grid, dataset);
+  stretch_points(desc.stretch, dataset);
   {
     const Capture capture; // cutting may complain as well
     CutOptions options;
@@ -232,6 +254,7 @@ TetcastDatasetDesc tetcast_dataset_desc_default(void) {
   desc.cookie = desc_cookie;
   desc.time = std::numeric_limits<double>::quiet_NaN();
   desc.merge_tolerance = -1;
+  std::fill(desc.stretch, desc.stretch + 3, 1.0);
   return desc;
 }
 
@@ -258,6 +281,11 @@ TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, co
     return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
                                  "tetcast_dataset_read: subdivision %d is not from 0 to %d", all.subdivision,
                                  TETCAST_MAX_SUBDIVISION);
+  }
+  for (const double factor : all.stretch) {
+    if (!(factor > 0) || std::isinf(factor))
+      return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
+                                   "tetcast_dataset_read: the stretch %g is not a finite number above 0", factor);
   }
   return fence(context, path, [&] {
     auto result = std::make_unique<TetcastDataset>();
