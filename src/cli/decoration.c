@@ -35,7 +35,7 @@ static char *number_text(double value, double step) {
   const double size = fmax(fabs(value), step);
   if (fabs(value) < step * 1e-6)
     return cli_duplicate("0");
-  if (size >= 1e5 || size < 1e-3) {
+  if (size >= 1e9 || (size >= 1e5 && step >= 1000) || size < 1e-3) {
     const int digits = (int)fmax(0, floor(log10(fabs(value))) - floor(log10(step) + 1e-9));
     return cli_print("%.*e", digits < 6 ? digits : 6, value);
   }

@@ -123,29 +123,66 @@ static void find_direction(const RenderOptions *options, const double bounds[6],
                      render_options_given(options, OPTION_ELEVATION) ? options->elevation : elevation, eye, up);
 }
 
-/* The least distance from which all corners of the bounds are in the picture, with a margin, wider at the sides, where
- * the legend is. Seen along its axes, a ball round them is what fits. */
-static double fit(const TetcastCamera *camera, const double bounds[6], const double eye[3], const double up[3],
-                  double aspect) {
-  const double tangent = tan(camera->fovy / 2 * degree), high = 0.9 * tangent, wide = 0.8 * tangent * aspect;
-  double unit[3], side[3], top[3], distance = 0;
+/* The bounds' corners as a camera at the target would see them: to the side, upwards, towards the eye. */
+static void turn_corners(const TetcastCamera *camera, const double bounds[6], const double eye[3], const double up[3],
+                         double side[3], double corner[8][3]) {
+  double unit[3], top[3];
   normalize(up, unit);
   for (int i = 0; i < 3; i++)
     side[i] = unit[(i + 1) % 3] * eye[(i + 2) % 3] - unit[(i + 2) % 3] * eye[(i + 1) % 3];
   normalize(side, side);
   for (int i = 0; i < 3; i++)
     top[i] = eye[(i + 1) % 3] * side[(i + 2) % 3] - eye[(i + 2) % 3] * side[(i + 1) % 3];
-  for (int corner = 0; corner < 8; corner++) {
-    double x = 0, y = 0, z = 0;
+  for (int c = 0; c < 8; c++) {
+    memset(corner[c], 0, sizeof corner[c]);
     for (int k = 0; k < 3; k++) {
-      const double from = bounds[2 * k + (corner >> k & 1)] - camera->target[k];
-      x += from * side[k];
-      y += from * top[k];
-      z += from * eye[k];
+      const double from = bounds[2 * k + (c >> k & 1)] - camera->target[k];
+      corner[c][0] += from * side[k];
+      corner[c][1] += from * top[k];
+      corner[c][2] += from * eye[k];
     }
-    distance = fmax(distance, z + fmax(fabs(x) / wide, fabs(y) / high));
   }
-  return distance;
+}
+
+/* Whether all corners are in the picture from this distance, if the camera goes sideways; how far at least. At the
+ * right there is room for the legend. */
+static bool fits(const double corner[8][3], double distance, double tangent, double aspect, double *shift) {
+  static const double left = 0.92, right = 0.7, high = 0.9;
+  double least = -INFINITY, most = INFINITY;
+  for (int c = 0; c < 8; c++) {
+    const double reach = (distance - corner[c][2]) * tangent;
+    if (!(reach > 0) || fabs(corner[c][1]) > high * reach)
+      return false;
+    least = fmax(least, corner[c][0] - right * aspect * reach);
+    most = fmin(most, corner[c][0] + left * aspect * reach);
+  }
+  *shift = fmin(fmax(0, least), most);
+  return least <= most;
+}
+
+/* Moves the camera to the least distance from which all corners of the bounds are in the picture, and sideways, as far
+ * as it has to go there. */
+static double fit(TetcastCamera *camera, const double bounds[6], const double eye[3], const double up[3], double aspect,
+                  bool centered) {
+  const double tangent = tan(camera->fovy / 2 * degree);
+  double side[3], corner[8][3], far = 0, near = 0, shift = 0, moved = 0;
+  turn_corners(camera, bounds, eye, up, side, corner);
+  for (int c = 0; c < 8; c++)
+    far = fmax(far, fabs(corner[c][2]) + 2 * (fabs(corner[c][0]) / aspect + fabs(corner[c][1])) / tangent);
+  if (!(far > 0) || !isfinite(2 * far))
+    return NAN;
+  for (int i = 0; i < 60; i++) {
+    const double middle = near / 2 + far / 2;
+    if (fits((const double(*)[3])corner, middle, tangent, aspect, &shift) && (!centered || shift == 0)) {
+      far = middle;
+      moved = shift;
+    } else {
+      near = middle;
+    }
+  }
+  for (int k = 0; k < 3; k++)
+    camera->target[k] += moved * side[k];
+  return far;
 }
 
 const char *view_reason(const RenderOptions *options, const double bounds[6]) {
@@ -180,8 +217,9 @@ bool view_complete(const RenderOptions *options, const double bounds[6], Tetcast
   else
     find_direction(options, bounds, direction, up);
   if (!eye && !render_options_given(options, OPTION_ORTHO)) {
-    const double fitting = fit(camera, bounds, direction, up, aspect) / options->zoom;
-    distance = fitting > 0 && isfinite(fitting) ? fitting : distance;
+    const bool centered = render_options_given(options, OPTION_TARGET) || render_options_given(options, OPTION_ORBIT);
+    const double fitting = fit(camera, bounds, direction, up, aspect, centered) / options->zoom;
+    distance = fitting > 0 ? fitting : distance;
   }
   for (int i = 0; i < 3 && !eye; i++) {
     camera->eye[i] = camera->target[i] + distance * direction[i];

@@ -81,16 +81,17 @@ corners() { # SIZE ARGUMENTS…
         x = y = z = 0
         for (k = 1; k <= 3; k++) { d = p[k] - eye[k]; x += d * right[k]; y += d * top[k]; z += d * forward[k] }
         x /= z * tangent * wh[1] / wh[2]; y /= z * tangent
-        far = x * x > far * far ? x : far; high = y * y > high * high ? y : high
+        left = -x > left ? -x : left; far = x > far ? x : far; high = y * y > high * high ? y : high
       }
-      far = far < 0 ? -far : far; high = high < 0 ? -high : high
-      exit !(far < 0.81 && high < 0.91 && (far > 0.78 || high > 0.88))
+      high = high < 0 ? -high : high
+      exit !(left < 0.921 && far < 0.701 && high < 0.901 && (left + far > 1.61 || high > 0.899))
     }' || fail "corners of $*: $output"
 }
 corners 20x20
 corners 40x20 --view -y
 corners 20x40 --fovy 80 --azimuth 77 --elevation -40
 corners 90x10 --up 1,2,3
+corners 30x20 --view iso
 
 camera --eye 5,5,5
 contains '"eye":\[5.0,5.0,5.0\],"target":\[0.5,0.5,0.5\],"up":\[0.0,1.0,0.0\]'
