@@ -136,8 +136,9 @@ static TetcastStatus narrow(const Data *data, double range[2], Shares *shares) {
   return TETCAST_OK;
 }
 
-/* Whether most of the volume, but for what is 0 or as good as that, has values that are small against the largest; and
- * the range of those, as far as they are not quite rare. */
+/* Whether all but a twentieth of the volume, not counting what is 0 or as good as that, has values below a twentieth of
+ * the largest: in linear colours that would be one of them, with a speck. And the range of those that are not quite
+ * rare. */
 static TetcastStatus find_log_range(const Data *data, bool asked, double range[2], bool *found) {
   const double most = data->range[1], least = fmax(data->range[0], most * pow(10, -DECADES));
   Shares decades;
@@ -151,7 +152,7 @@ static TetcastStatus find_log_range(const Data *data, bool asked, double range[2
   const double low = find_quantile(&decades, 0.02, 0.5), high = find_quantile(&decades, 0.995, 0.5);
   range[0] = fmax(pow(10, low), least);
   range[1] = fmin(pow(10, high), most);
-  *found = asked || (find_quantile(&decades, 0.75, 1) < log10(most / 32) && high - low >= 1.5);
+  *found = asked || (find_quantile(&decades, 0.95, 1) < log10(most / 20) && high - low >= 1.5);
   return TETCAST_OK;
 }
 
