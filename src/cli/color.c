@@ -48,3 +48,13 @@ bool color_parse(const char *text, double rgba[4]) {
     }
   return false;
 }
+
+void colors_at(const double *knots, int64_t count, double value, double rgb[3]) {
+  int64_t after = 0;
+  while (after < count && knots[4 * after] <= value)
+    after++;
+  const double *a = knots + 4 * (after > 0 ? after - 1 : 0), *b = knots + 4 * (after < count ? after : count - 1);
+  const double part = b[0] > a[0] ? (value - a[0]) / (b[0] - a[0]) : 0;
+  for (int k = 0; k < 3; k++)
+    rgb[k] = a[1 + k] + part * (b[1 + k] - a[1 + k]);
+}

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli.h"
+#include "color.h"
 #include "surfaces.h"
 
 enum { COLORS = 256, TICKS = 12 };
@@ -66,17 +67,6 @@ static void label_decades(Decoration *d, const DesignMap *map) {
       }
 }
 
-/* The colour of a transfer function at a value. */
-static void color_at(const double *knots, int64_t count, double value, double rgb[3]) {
-  int64_t i = 0;
-  while (i < count && knots[4 * i] <= value)
-    i++;
-  const double *a = knots + 4 * (i > 0 ? i - 1 : 0), *b = knots + 4 * (i < count ? i : count - 1);
-  const double w = b[0] > a[0] ? (value - a[0]) / (b[0] - a[0]) : 0;
-  for (int k = 0; k < 3; k++)
-    rgb[k] = fmin(fmax(a[k + 1] * (1 - w) + b[k + 1] * w, 0), 1);
-}
-
 /* A bar of the transfer function's colours, over its map, or from its first to its last colour. */
 static void make_bar(const Stage *stage, Decoration *d) {
   int64_t count;
@@ -85,13 +75,13 @@ static void make_bar(const Stage *stage, Decoration *d) {
   if (!(map.range[0] < map.range[1])) { /* a single value */
     d->legend.color_count = 1;
     d->legend.categories = 1;
-    color_at(knots, count, map.range[0], d->colors);
+    colors_at(knots, count, map.range[0], d->colors);
     add_label(d, 0, cli_print("%g", map.range[0]));
     return;
   }
   d->legend.color_count = COLORS;
   for (int i = 0; i < COLORS; i++)
-    color_at(knots, count, design_value(&map, i / (COLORS - 1.0)), d->colors + 3 * i);
+    colors_at(knots, count, design_value(&map, i / (COLORS - 1.0)), d->colors + 3 * i);
   if (map.logarithmic)
     label_decades(d, &map);
   else
@@ -105,7 +95,7 @@ static void make_categories(const Stage *stage, Decoration *d) {
   const int most = stage->matter.count < COLORS ? stage->matter.count : COLORS;
   d->legend.categories = 1;
   for (int i = 0; i < most; i++) {
-    color_at(knots, count, stage->matter.labels[i], d->colors + 3 * d->legend.color_count++);
+    colors_at(knots, count, stage->matter.labels[i], d->colors + 3 * d->legend.color_count++);
     d->labels[d->legend.label_count++] = cli_print("%g", stage->matter.labels[i]);
   }
 }
@@ -128,6 +118,8 @@ void decoration_make(const Stage *stage, const RenderOptions *options, Decoratio
     make_categories(stage, d);
   else
     make_bar(stage, d);
+  for (int i = 0; i < 3 * d->legend.color_count; i++)
+    d->colors[i] = fmin(fmax(d->colors[i], 0), 1); /* the legend is no light, and can't shine */
   d->legend.title = options->legend && *options->legend ? options->legend : stage->array;
   d->legend.colors = d->colors;
   d->legend.places = d->places;

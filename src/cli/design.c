@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cli.h"
+#include "color.h"
 
 /* BINS tell values apart, and SHARES are what extinctions are found for. */
 enum { BINS = 1024, SHARES = 16, COLORS = 17, DECADES = 12 };
@@ -270,17 +271,6 @@ TetcastStatus design_find(TetcastContext *context, const TetcastMesh *mesh, cons
 
 /* ── colours ── */
 
-/* The colour of a list of knots at a place in [0, 1]; of one knot, its own. */
-static void color_at(const double *knots, int64_t count, double place, double rgb[3]) {
-  int64_t i = 0;
-  while (i + 2 < count && knots[4 * (i + 1)] < place)
-    i++;
-  const double *a = knots + 4 * i, *b = count > 1 ? a + 4 : a;
-  const double w = b[0] > a[0] ? fmin(fmax((place - a[0]) / (b[0] - a[0]), 0), 1) : 0;
-  for (int k = 0; k < 3; k++)
-    rgb[k] = a[k + 1] * (1 - w) + b[k + 1] * w;
-}
-
 TetcastStatus design_shade(TetcastContext *context, const TetcastScene *scene, const Design *design,
                            const TetcastCamera *camera, const TetcastTransferFunction *map,
                            TetcastTransferFunction **transfer_function) {
@@ -297,7 +287,7 @@ TetcastStatus design_shade(TetcastContext *context, const TetcastScene *scene, c
     if (!(value > last))
       continue;
     last = color[colors][0] = value;
-    color_at(knots, count, place, color[colors++] + 1);
+    colors_at(knots, count, place, color[colors++] + 1);
   }
   TetcastTransferFunctionDesc desc = tetcast_transfer_function_desc_default();
   desc.color = color[0];

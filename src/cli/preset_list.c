@@ -7,6 +7,7 @@
 
 #include "adapter.h"
 #include "cli.h"
+#include "color.h"
 #include "file.h"
 #include "progress.h"
 
@@ -22,18 +23,6 @@ static int print_names(void) {
   return cli_finish_output();
 }
 
-/* The colour of a map's knots at a place in [0, 1]. */
-static void color_at(const double *knots, int64_t count, double place, float rgba[4]) {
-  int64_t next = 0;
-  while (next < count && knots[4 * next] <= place)
-    next++;
-  const double *b = knots + 4 * (next < count ? next : count - 1), *a = next > 0 ? knots + 4 * (next - 1) : b;
-  const double way = b[0] > a[0] ? (place - a[0]) / (b[0] - a[0]) : 0;
-  for (int k = 0; k < 3; k++)
-    rgba[k] = (float)((1 - way) * a[k + 1] + way * b[k + 1]);
-  rgba[3] = 1;
-}
-
 static TetcastStatus draw_bar(TetcastContext *context, const char *name, float *place) {
   TetcastTransferFunction *map = NULL;
   const TetcastStatus status = tetcast_transfer_function_create_preset(context, name, 0, 1, 0, &map);
@@ -41,9 +30,13 @@ static TetcastStatus draw_bar(TetcastContext *context, const char *name, float *
     return status;
   int64_t count;
   const double *knots = tetcast_transfer_function_color(map, &count);
-  for (int64_t i = 0; i < BAR_WIDTH * BAR_HEIGHT; i++)
-    color_at(knots, count, ((double)(i % BAR_WIDTH) + 0.5) / BAR_WIDTH,
-             place + 4 * (i / BAR_WIDTH * WIDTH + i % BAR_WIDTH));
+  for (int64_t i = 0; i < BAR_WIDTH * BAR_HEIGHT; i++) {
+    double rgb[3];
+    float *rgba = place + 4 * (i / BAR_WIDTH * WIDTH + i % BAR_WIDTH);
+    colors_at(knots, count, ((double)(i % BAR_WIDTH) + 0.5) / BAR_WIDTH, rgb);
+    for (int k = 0; k < 4; k++)
+      rgba[k] = k < 3 ? (float)rgb[k] : 1;
+  }
   tetcast_transfer_function_destroy(&map);
   return status;
 }

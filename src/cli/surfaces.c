@@ -6,19 +6,8 @@
 #include <string.h>
 
 #include "cli.h"
+#include "color.h"
 #include "surface_text.h"
-
-/* The colour of the knots, linear between them, at a value. */
-static void color_at(const TetcastTransferFunction *transfer_function, double value, double color[3]) {
-  int64_t count, after = 0;
-  const double *knots = tetcast_transfer_function_color(transfer_function, &count);
-  while (after < count && knots[4 * after] <= value)
-    after++;
-  const double *a = knots + 4 * (after > 0 ? after - 1 : 0), *b = knots + 4 * (after < count ? after : count - 1);
-  const double part = b[0] > a[0] ? (value - a[0]) / (b[0] - a[0]) : 0;
-  for (int k = 0; k < 3; k++)
-    color[k] = a[1 + k] + part * (b[1 + k] - a[1 + k]);
-}
 
 TetcastStatus surfaces_set_colors(TetcastContext *context, TetcastScene *scene,
                                   const TetcastTransferFunction *transfer_function) {
@@ -38,12 +27,14 @@ TetcastStatus surfaces_set_colors(TetcastContext *context, TetcastScene *scene,
 static TetcastStatus set_isosurfaces(TetcastScene *scene, const TextList *list,
                                      const TetcastTransferFunction *transfer_function, const double range[2]) {
   TetcastIsosurface *isosurfaces = cli_allocate(sizeof *isosurfaces * (size_t)(list->count + 1));
+  int64_t count;
+  const double *knots = tetcast_transfer_function_color(transfer_function, &count);
   for (int i = 0; i < list->count; i++) {
     bool colored;
     surfaces_parse(list->text[i], &isosurfaces[i], &colored);
     const double value = isosurfaces[i].value;
     if (!colored)
-      color_at(transfer_function, value, isosurfaces[i].color);
+      colors_at(knots, count, value, isosurfaces[i].color);
     if (!(value >= range[0] && value <= range[1]))
       cli_warning("isosurface %g: nothing of it is seen, as the array's values lie between %g and %g", value, range[0],
                   range[1]);
