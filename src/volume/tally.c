@@ -22,40 +22,72 @@ typedef struct Block {
   double s[4][CELLS]; /* the values; once measured, ascending, and the last one NaN if one of them is not finite */
   double volume[CELLS], gradient[CELLS], place[CELLS];
   double per_value[3][CELLS]; /* 1 / (sᵢ₊₁ − sᵢ) */
-  double b0[CELLS], b2[CELLS];
+  double b0[CELLS], b2[CELLS], q[2][CELLS];
   double first[CELLS], middle[3][CELLS], last[CELLS]; /* the volume below v by powers of tᵢ */
   double area[CELLS];                                 /* of the isosurface, over q */
 } Block;
 
 /* ── tetrahedra in vectors ── */
 
-static void gather_values(const TcTally *tally, int64_t begin, int count, Block *block) {
-  const TetcastField field = *tally->field;
-  for (int l = 0; l < count; ++l) {
-    for (int k = 0; k < 4; ++k)
-      block->s[k][l] = tc_field_at(&field, field.association == TETCAST_CELL ? begin + l : 4 * (begin + l) + k);
+TC_INLINE double real_at(const char *from, bool wide) {
+  double x;
+  float narrow;
+  if (wide) {
+    memcpy(&x, from, sizeof x);
+    return x;
+  }
+  memcpy(&narrow, from, sizeof narrow);
+  return (double)narrow;
+}
+
+TC_INLINE void gather_positions(const TetcastArray *vertices, uint32_t vertex[CELLS][4], bool wide, Block *block) {
+  const char *data = vertices->data;
+  const int64_t stride = vertices->stride, size = wide ? sizeof(double) : sizeof(float);
+  for (int l = 0; l < CELLS; ++l) {
+    for (int k = 0; k < 4; ++k) {
+      const char *position = data + vertex[l][k] * stride;
+      for (int j = 0; j < 3; ++j)
+        block->position[k][j][l] = real_at(position + j * size, wide);
+    }
   }
 }
 
-/* The mesh and the field are copied so that the compiler knows that nothing changes their types meanwhile. */
-static void gather(const TcTally *tally, int64_t begin, int count, Block *block) {
-  const TetcastMesh mesh = *tally->mesh;
-  const TetcastField field = *tally->field;
-  const bool points = field.association == TETCAST_POINT;
-  for (int l = 0; l < count; ++l) {
-    uint32_t vertex[4];
-    tc_mesh_cell(&mesh, begin + l, vertex);
-    for (int k = 0; k < 4; ++k) {
-      double position[3];
-      tc_mesh_vertex(&mesh, vertex[k], position);
-      for (int j = 0; j < 3; ++j)
-        block->position[k][j][l] = position[j];
-      if (points)
-        block->s[k][l] = tc_field_at(&field, vertex[k]);
+TC_INLINE void gather_point_values(const TetcastArray *values, uint32_t vertex[CELLS][4], bool wide, Block *block) {
+  const char *data = values->data;
+  const int64_t stride = values->stride;
+  for (int l = 0; l < CELLS; ++l) {
+    for (int k = 0; k < 4; ++k)
+      block->s[k][l] = real_at(data + vertex[l][k] * stride, wide);
+  }
+}
+
+static void gather_values(const TetcastField *field, int64_t begin, int count, uint32_t vertex[CELLS][4],
+                          Block *block) {
+  if (field->association == TETCAST_POINT && field->values.type == TETCAST_TYPE_FLOAT32) {
+    gather_point_values(&field->values, vertex, false, block);
+  } else if (field->association == TETCAST_POINT && field->values.type == TETCAST_TYPE_FLOAT64) {
+    gather_point_values(&field->values, vertex, true, block);
+  } else {
+    for (int l = 0; l < count; ++l) {
+      for (int k = 0; k < 4; ++k)
+        block->s[k][l] = tc_field_at(field, field->association == TETCAST_POINT  ? vertex[l][k]
+                                            : field->association == TETCAST_CELL ? begin + l
+                                                                                 : 4 * (begin + l) + k);
     }
   }
-  if (!points)
-    gather_values(tally, begin, count, block);
+}
+
+/* Cells beyond `count`, at the end of the mesh, have the first vertex four times. */
+static void gather(const TcTally *tally, int64_t begin, int count, Block *block) {
+  uint32_t vertex[CELLS][4];
+  for (int l = 0; l < count; ++l)
+    tc_mesh_cell(tally->mesh, begin + l, vertex[l]);
+  memset(vertex[count], 0, (size_t)(CELLS - count) * sizeof *vertex);
+  if (tally->mesh->vertices.type == TETCAST_TYPE_FLOAT32)
+    gather_positions(&tally->mesh->vertices, vertex, false, block);
+  else
+    gather_positions(&tally->mesh->vertices, vertex, true, block);
+  gather_values(tally->field, begin, count, vertex, block);
 }
 
 TC_INLINE void cross(const TcVec a[3], const TcVec b[3], TcVec c[3]) {
@@ -93,7 +125,7 @@ TC_INLINE void measure_volume(const TcTally *tally, Block *block, int l, const T
       sum[j] = k == 0 ? (s[1] - s[0]) * across[j] : sum[j] + (s[k + 1] - s[0]) * across[j];
   }
   const TcVec six_volumes = tc_abs(determinant);
-  tc_store(&block->volume[l], six_volumes / 6);
+  tc_store(&block->volume[l], six_volumes * (1. / 6));
   if (tally->surfaces || tally->rows > 0 || tally->steepest)
     tc_store(&block->gradient[l],
              tc_select(tc_lt(tc_set(0), six_volumes), tc_sqrt(dot(sum, sum)) / six_volumes, tc_set(0)));
@@ -121,54 +153,64 @@ TC_INLINE void measure(const TcTally *tally, Block *block, int l) {
     tc_store(&block->s[k][l], s[k]);
 }
 
-/* A difference of denormals has a reciprocal that overflows; the largest number instead leaves quotients at most 1. So
- * it does where the difference is 0, as what it is multiplied by is then 0, too. */
-TC_INLINE TcVec inverse(TcVec difference) {
-  return tc_min(1 / difference, tc_set(DBL_MAX));
+/* The reciprocals of two numbers, with one division. Numbers below 2⁻⁵⁰⁰, of a largest value near 1, are taken for that,
+ * so that nothing overflows: 0 times its reciprocal is 0. */
+TC_INLINE void invert(TcVec a, TcVec b, TcVec *inverse_a, TcVec *inverse_b) {
+  const TcVec least = tc_set(0x1p-500), c = tc_max(a, least), d = tc_max(b, least), inverse = 1 / (c * d);
+  *inverse_a = inverse * d;
+  *inverse_b = inverse * c;
 }
 
 TC_INLINE void find_splines(Block *block, int l) {
-  TcVec s[4];
+  TcVec s[4], r10, r21, r32, r20, r31, r30;
   for (int k = 0; k < 4; ++k)
     s[k] = tc_load(&block->s[k][l]);
-  for (int k = 0; k < 3; ++k)
-    tc_store(&block->per_value[k][l], inverse(s[k + 1] - s[k]));
-  const TcVec b0 = (s[1] - s[0]) * inverse(s[2] - s[0]), b2 = (s[3] - s[2]) * inverse(s[3] - s[1]),
-              all = inverse(s[3] - s[0]), volume = tc_load(&block->volume[l]);
-  const TcVec middle = volume * ((s[2] - s[1]) * all);
+  invert(s[1] - s[0], s[3] - s[2], &r10, &r32);
+  invert(s[2] - s[0], s[3] - s[1], &r20, &r31);
+  invert(s[2] - s[1], s[3] - s[0], &r21, &r30);
+  const TcVec volume = tc_load(&block->volume[l]), middle = volume * ((s[2] - s[1]) * r30),
+              b0 = (s[1] - s[0]) * r20, b2 = (s[3] - s[2]) * r31;
+  tc_store(&block->per_value[0][l], r10);
+  tc_store(&block->per_value[1][l], r21);
+  tc_store(&block->per_value[2][l], r32);
   tc_store(&block->b0[l], b0);
   tc_store(&block->b2[l], b2);
-  tc_store(&block->first[l], volume * (b0 * ((s[1] - s[0]) * all)));
+  tc_store(&block->q[0][l], 2 * (1 - b0));
+  tc_store(&block->q[1][l], b0 - 2 + b2);
+  tc_store(&block->first[l], volume * (b0 * ((s[1] - s[0]) * r30)));
   tc_store(&block->middle[0][l], middle * (3 * b0));
   tc_store(&block->middle[1][l], middle * (3 * (1 - b0)));
   tc_store(&block->middle[2][l], middle * (b0 - 2 + b2));
-  tc_store(&block->last[l], volume * (b2 * ((s[3] - s[2]) * all)));
-  tc_store(&block->area[l], 3 * volume * (tc_load(&block->gradient[l]) * all));
+  tc_store(&block->last[l], volume * (b2 * ((s[3] - s[2]) * r30)));
+  tc_store(&block->area[l], 3 * volume * (tc_load(&block->gradient[l]) * r30));
 }
 
 /* ── edges in vectors ── */
 
-/* q at edges v > s₀ and the volumes below them; at s₃, q is its limit from below, and beyond it is without meaning. A
- * part that lies above v is 0, and may be left out. */
+/* q at edges v > s₀ and the volumes below them; at s₃, q is its limit from below, and beyond it is 0. One lane computes
+ * the polynomials of one piece alone. */
 TC_INLINE TcVec splines_at(const Block *block, int l, TcVec v, TcVec *below) {
-  const TcVec s0 = tc_set(block->s[0][l]), s1 = tc_set(block->s[1][l]), s2 = tc_set(block->s[2][l]),
-              s3 = tc_set(block->s[3][l]), b0 = tc_set(block->b0[l]), b2 = tc_set(block->b2[l]);
-  const TcMask beyond1 = tc_lt(s1, v), beyond2 = tc_lt(s2, v);
-  TcVec t = (tc_min(v, s1) - s0) * block->per_value[0][l], q = b0 * (t * t);
-  *below = block->first[l] * (t * t * t);
-  if (TC_LANES > 1 || tc_any(beyond1)) {
-    const TcVec at = tc_min(tc_max(v, s1), s2), u = (s2 - at) * block->per_value[1][l];
-    t = (at - s1) * block->per_value[1][l];
-    q = tc_select(beyond1, u * (b0 * u + 2 * t) + b2 * (t * t), q);
-    *below = *below + t * (block->middle[0][l] + t * (block->middle[1][l] + t * block->middle[2][l]));
+  const TcVec s3 = tc_set(block->s[3][l]);
+  const TcMask beyond2 = tc_lt(tc_set(block->s[2][l]), v),
+               middle = tc_and_not(tc_lt(tc_set(block->s[1][l]), v), beyond2);
+  TcVec q = tc_set(0);
+  *below = q;
+  if (TC_LANES > 1 || !tc_any(middle)) { /* the outer two are a constant and a power of the distance from s₀ or s₃ */
+    const TcVec t = (tc_min(v, s3) - tc_select(beyond2, s3, tc_set(block->s[0][l]))) *
+                    tc_select(beyond2, tc_set(block->per_value[2][l]), tc_set(block->per_value[0][l]));
+    const TcVec square = t * t;
+    q = tc_select(beyond2, tc_set(block->b2[l]), tc_set(block->b0[l])) * square;
+    *below = tc_select(beyond2, tc_set(block->volume[l]), tc_set(0)) +
+             tc_select(beyond2, tc_set(block->last[l]), tc_set(block->first[l])) * (square * t);
   }
-  if (TC_LANES > 1 || tc_any(beyond2)) {
-    const TcVec at = tc_min(tc_max(v, s2), s3), u = (s3 - at) * block->per_value[2][l];
-    t = (at - s2) * block->per_value[2][l];
-    q = tc_select(beyond2, b2 * (u * u), q);
-    *below = *below + block->last[l] * (t * (3 + t * (t - 3)));
+  if (TC_LANES > 1 || tc_any(middle)) {
+    const TcVec t = (v - block->s[1][l]) * block->per_value[1][l];
+    q = tc_select(middle, block->b0[l] + t * (block->q[0][l] + t * block->q[1][l]), q);
+    *below = tc_select(
+        middle, block->first[l] + t * (block->middle[0][l] + t * (block->middle[1][l] + t * block->middle[2][l])),
+        *below);
   }
-  return q;
+  return tc_max(q, tc_set(0));
 }
 
 TC_INLINE void add(double *to, TcVec v) {
@@ -178,7 +220,7 @@ TC_INLINE void add(double *to, TcVec v) {
 /* Adds a cell that has edges between its values, the first of which is edges[i]. At its largest value a cell has the
  * isosurface still, at its smallest no more. */
 TC_INLINE void add_crossed(const TcTally *tally, const Block *block, int l, int i, double *joint, TcTallySums *sums) {
-  const TcVec s3 = tc_set(block->s[3][l]), gradient = tc_set(block->gradient[l]);
+  const TcVec gradient = tc_set(block->gradient[l]);
   TcVec before = tc_set(0), v;
   do {
     TcVec below;
@@ -188,7 +230,7 @@ TC_INLINE void add_crossed(const TcTally *tally, const Block *block, int l, int 
     if (joint)
       add(&joint[i], volume);
     if (tally->surfaces) {
-      const TcVec area = tc_select(tc_le(v, s3), q * block->area[l], tc_set(0));
+      const TcVec area = q * block->area[l];
       add(&sums->area[i], area);
       add(&sums->gradient[i], area * gradient);
     }
