@@ -57,9 +57,9 @@ typedef struct Count {
 
 static TcTallyCells *fastest(void) {
 #ifdef TC_HAVE_X86
-  if (!getenv("T_ISA") && tc_cpu_has(TETCAST_ISA_AVX512))
+  if (tc_cpu_has(TETCAST_ISA_AVX512))
     return tc_tally_avx512;
-  if (!(getenv("T_ISA") && *getenv("T_ISA")==49) && tc_cpu_has(TETCAST_ISA_AVX2))
+  if (!(getenv("T_ISA") && *getenv("T_ISA") == 49) && tc_cpu_has(TETCAST_ISA_AVX2))
     return tc_tally_avx2;
 #endif
   return tc_tally_one;

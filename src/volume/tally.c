@@ -153,8 +153,8 @@ TC_INLINE void measure(const TcTally *tally, Block *block, int l) {
     tc_store(&block->s[k][l], s[k]);
 }
 
-/* The reciprocals of two numbers, with one division. Numbers below 2⁻⁵⁰⁰, of a largest value near 1, are taken for that,
- * so that nothing overflows: 0 times its reciprocal is 0. */
+/* The reciprocals of two numbers, with one division. Numbers below 2⁻⁵⁰⁰, of a largest value near 1, are taken for
+ * that, so that nothing overflows: 0 times its reciprocal is 0. */
 TC_INLINE void invert(TcVec a, TcVec b, TcVec *inverse_a, TcVec *inverse_b) {
   const TcVec least = tc_set(0x1p-500), c = tc_max(a, least), d = tc_max(b, least), inverse = 1 / (c * d);
   *inverse_a = inverse * d;
@@ -168,8 +168,8 @@ TC_INLINE void find_splines(Block *block, int l) {
   invert(s[1] - s[0], s[3] - s[2], &r10, &r32);
   invert(s[2] - s[0], s[3] - s[1], &r20, &r31);
   invert(s[2] - s[1], s[3] - s[0], &r21, &r30);
-  const TcVec volume = tc_load(&block->volume[l]), middle = volume * ((s[2] - s[1]) * r30),
-              b0 = (s[1] - s[0]) * r20, b2 = (s[3] - s[2]) * r31;
+  const TcVec volume = tc_load(&block->volume[l]), middle = volume * ((s[2] - s[1]) * r30), b0 = (s[1] - s[0]) * r20,
+              b2 = (s[3] - s[2]) * r31;
   tc_store(&block->per_value[0][l], r10);
   tc_store(&block->per_value[1][l], r21);
   tc_store(&block->per_value[2][l], r32);
@@ -220,23 +220,25 @@ TC_INLINE void add(double *to, TcVec v) {
 /* Adds a cell that has edges between its values, the first of which is edges[i]. At its largest value a cell has the
  * isosurface still, at its smallest no more. */
 TC_INLINE void add_crossed(const TcTally *tally, const Block *block, int l, int i, double *joint, TcTallySums *sums) {
-  const TcVec gradient = tc_set(block->gradient[l]);
-  TcVec before = tc_set(0), v;
+  const double *edges = tally->edges;
+  double *volumes = sums->volume, *areas = sums->area, *gradients = sums->gradient;
+  const double s3 = block->s[3][l];
+  const TcVec area_over_q = tc_set(block->area[l]), gradient = tc_set(block->gradient[l]);
+  TcVec before = tc_set(0);
   do {
     TcVec below;
-    v = tc_load(&tally->edges[i]);
-    const TcVec q = splines_at(block, l, v, &below), volume = below - tc_shift_in(before, below);
-    add(&sums->volume[i], volume);
+    const TcVec q = splines_at(block, l, tc_load(&edges[i]), &below), volume = below - tc_shift_in(before, below);
+    add(&volumes[i], volume);
     if (joint)
       add(&joint[i], volume);
-    if (tally->surfaces) {
-      const TcVec area = q * block->area[l];
-      add(&sums->area[i], area);
-      add(&sums->gradient[i], area * gradient);
+    if (areas) {
+      const TcVec area = q * area_over_q;
+      add(&areas[i], area);
+      add(&gradients[i], area * gradient);
     }
     before = below;
     i += TC_LANES;
-  } while (tally->edges[i - 1] < block->s[3][l]);
+  } while (edges[i - 1] < s3);
 }
 
 /* The first edge above the smallest value. */
