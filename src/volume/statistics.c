@@ -15,7 +15,7 @@ enum { PARTS = 64, JOINT_PARTS = 16 };
 
 /* Quantiles: how many at a time, into how many bins the range is divided at first and each of their brackets later, and
  * at how many distances from where a quantile may be expected its bracket is divided as well. */
-enum { TARGETS = 64, FIRST_BINS = 256, SECTIONS = 32, DISTANCES = 20, EDGES = SECTIONS + 1 + 2 * DISTANCES };
+enum { TARGETS = 64, FIRST_BINS = 256, SECTIONS = 16, DISTANCES = 10, EDGES = SECTIONS + 1 + 2 * DISTANCES };
 
 /* ── units ── */
 
@@ -297,7 +297,7 @@ static int divide(const Bracket *b, double target, double *edges) {
   for (int k = 0; k <= SECTIONS; ++k)
     edges[n++] = k == SECTIONS ? b->high : b->low + k * (width / SECTIONS);
   double distance = width / SECTIONS;
-  for (int k = 0; k < DISTANCES; ++k, distance /= 4) {
+  for (int k = 0; k < DISTANCES; ++k, distance /= 16) {
     edges[n++] = fmax(b->low, middle - distance);
     edges[n++] = fmin(b->high, middle + distance);
   }
