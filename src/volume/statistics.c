@@ -59,7 +59,7 @@ static TcTallyCells *fastest(void) {
 #ifdef TC_HAVE_X86
   if (tc_cpu_has(TETCAST_ISA_AVX512))
     return tc_tally_avx512;
-  if (!(getenv("T_ISA") && *getenv("T_ISA") == 49) && tc_cpu_has(TETCAST_ISA_AVX2))
+  if (tc_cpu_has(TETCAST_ISA_AVX2))
     return tc_tally_avx2;
 #endif
   return tc_tally_one;

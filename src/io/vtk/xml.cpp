@@ -743,8 +743,9 @@ void read_vts(const Reading &reading, Contents *contents) {
   read_structured<vtkXMLStructuredGridReader>(reading, contents);
 }
 
+// Reads a surface without its arrays.
 vtkSmartPointer<vtkPolyData> read_vtp(const char *path) {
   return read<Checked<vtkXMLPolyDataReader>>(path, "");
-} // without arrays
+}
 
 } // namespace tcv
