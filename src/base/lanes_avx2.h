@@ -142,3 +142,11 @@ TC_INLINE TcVec tc_determinant(TcVec a, TcVec b, TcVec c, TcVec d) {
   const TcVec q = b * c;
   return tc_msub(a, d, q) - tc_msub(b, c, q);
 }
+
+#if !TC_SINGLE
+/* The lanes of v moved up by one, and the last lane of `before` in the first. */
+TC_INLINE TcVec tc_shift_in(TcVec before, TcVec v) {
+  const __m256d middle = _mm256_permute2f128_pd(TC_R(before), TC_R(v), 0x21);
+  return (TcVec)_mm256_shuffle_pd(middle, TC_R(v), 5);
+}
+#endif

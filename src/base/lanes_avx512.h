@@ -193,3 +193,10 @@ TC_INLINE TcVec tc_lookup(const TcReal table[TC_LANES], TcInt at) {
   return (TcVec)_mm512_permutexvar_pd((__m512i)at, _mm512_loadu_pd(table));
 #endif
 }
+
+#if !TC_SINGLE
+/* The lanes of v moved up by one, and the last lane of `before` in the first. */
+TC_INLINE TcVec tc_shift_in(TcVec before, TcVec v) {
+  return (TcVec)_mm512_alignr_epi64((__m512i)v, (__m512i)before, 7);
+}
+#endif

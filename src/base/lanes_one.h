@@ -95,3 +95,9 @@ TC_INLINE TcVec tc_determinant(TcVec a, TcVec b, TcVec c, TcVec d) {
   const TcVec p = a * d, q = b * c, e = p - q;
   return fabs(e) > 0.5 * fabs(p) ? e : e + (tc_product_error(a, d, p) - tc_product_error(b, c, q));
 }
+
+/* The lanes of v moved up by one, and the last lane of `before` in the first. */
+TC_INLINE TcVec tc_shift_in(TcVec before, TcVec v) {
+  (void)v;
+  return before;
+}

@@ -39,10 +39,11 @@ static inline void tc_mesh_vertex(const TetcastMesh *mesh, int64_t i, double pos
   if (mesh->vertices.type == TETCAST_TYPE_FLOAT64) {
     memcpy(position, tuple, 3 * sizeof *position);
   } else {
-    float p[3];
-    memcpy(p, tuple, sizeof p);
-    for (int k = 0; k < 3; ++k)
-      position[k] = (double)p[k];
+    for (int k = 0; k < 3; ++k) {
+      float p;
+      memcpy(&p, tuple + k * (int)sizeof p, sizeof p);
+      position[k] = (double)p;
+    }
   }
 }
 

@@ -8,6 +8,7 @@
 #include <vtkCellArray.h>
 #include <vtkCellType.h>
 #include <vtkColorTransferFunction.h>
+#include <vtkContourFilter.h>
 #include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
 #include <vtkNew.h>
@@ -15,6 +16,7 @@
 #include <vtkPiecewiseFunction.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
+#include <vtkPolyData.h>
 #include <vtkRayCastImageDisplayHelper.h>
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
@@ -234,6 +236,20 @@ int64_t caster_cast(Caster *caster, float *pixels) {
     }
   }
   return crossed;
+}
+
+int64_t caster_contour(Caster *caster, const double *values, int count) try {
+  vtkNew<vtkContourFilter> filter;
+  filter->SetInputData(caster->grid);
+  filter->ComputeNormalsOff();
+  filter->ComputeScalarsOff();
+  for (int i = 0; i < count; i++) {
+    filter->SetValue(i, values[i]);
+  }
+  filter->Update();
+  return filter->GetOutput()->GetNumberOfPolys();
+} catch (const std::exception &) {
+  return -1;
 }
 
 const char *caster_vtk_version(void) {

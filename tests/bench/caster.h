@@ -39,6 +39,10 @@ bool caster_transfer(Caster *caster, const TetcastTransferFunctionDesc *transfer
  * crossed. */
 int64_t caster_cast(Caster *caster, float *pixels);
 
+/* Finds isosurfaces at these values with vtkContourFilter, as triangles with nothing but points. Returns how many
+ * triangles there are, -1 when VTK throws. */
+int64_t caster_contour(Caster *caster, const double *values, int count);
+
 const char *caster_vtk_version(void);
 
 #ifdef __cplusplus

@@ -140,7 +140,7 @@ static void set_isosurfaces(Tet *tet, int count) {
   const int surfaces = abs(count);
   for (int i = 0; i < surfaces; i++) {
     list[i] = (TetcastIsosurface){
-        .value = (i + 1.0) / (surfaces + 1), .color = {0.9, 0.5, 0.2}, .opacity = count < 0 ? 0.5 : 1};
+        .value = isosurface_value(i, surfaces), .color = {0.9, 0.5, 0.2}, .opacity = count < 0 ? 0.5 : 1};
   }
   must(tetcast_scene_set_isosurfaces(tet->scene, list, surfaces) == TETCAST_OK, "isosurfaces");
 }

@@ -45,6 +45,9 @@ void job_memory_vtk(const Job *job);
 void job_visible(const Job *job);
 void job_features(const Job *job);
 
+/* What the field's statistics and quantiles cost, and finding isosurfaces with VTK, beside features. */
+void job_numbers(const Job *job);
+
 /* Writes the mesh as .vtu; reads it; renders it with the command. */
 void job_file(const Job *job);
 

@@ -160,6 +160,9 @@ def changes(results, scene, out):
     for row in results.all(task='transfer function', scene=scene, renderer=TETCAST, threads=1):
         out.add(f"new transfer function per tetrahedron, {row['case']}", scene, 1e9 * row['cpu_s'] / row['tetrahedra'],
                 '≤', 5, 'ns')
+    for row in results.all(task='statistics', scene=scene, case='256 bins'):
+        if row['tetrahedra'] > 1000000:  # of coarser meshes a cell has values in many more bins
+            out.add('statistics per tetrahedron, 256 bins', scene, 1e9 * row['cpu_s'] / row['tetrahedra'], '≤', 25, 'ns')
     out.add('1 % of the cells visible, against all', scene,
             ratio(results.frame(scene, '100 % visible', TETCAST), results.frame(scene, '1 % visible', TETCAST)), '≥', 8, '×')
     out.add('`tetcast render` of a file to PNG, over only reading and writing', scene,
@@ -222,6 +225,21 @@ def features(results):
                f'{100 * (per_cell(row) / per_cell(base) - 1):+.0f} %')
 
 
+def numbers(results):
+    for row in results.all(task='statistics'):
+        yield (row['scene'], count(row['tetrahedra']), row['case'], number(row['cpu_s']), number(1e9 * row['cpu_s'] / row['tetrahedra']))
+
+
+def isosurfaces(results):
+    """Sentences about VTK's way to isosurfaces, beside a picture of tetcast's with three opaque ones."""
+    for vtk in results.all(task='isosurfaces'):
+        picture = results.one(task='feature', scene=vtk['scene'], case='3 opaque lit isosurfaces alone')
+        if picture:
+            yield (f"Three isosurfaces of {vtk['scene']}: `vtkContourFilter` takes {number(vtk['cpu_s'])} s to find their triangles, which "
+                   f"are then still to be drawn. tetcast needs no triangles: its picture of {picture['pixels']:.0f}² pixels "
+                   f"takes {number(picture['cpu_s'])} s. VTK takes {number(ratio(vtk, picture))} times as long.\n\n")
+
+
 def others(results):
     for row in results.rows:
         if row['task'] in ('cut', 'read', 'file to picture') or \
@@ -251,6 +269,9 @@ def write(results, path, figures):
         table(file, ('scene', 'transfer function') + ('',) * (max(map(len, rows)) - 2), rows)
         file.write('## What a feature costs\n\n')
         table(file, ('scene', 'feature', 's', 'ns a cell', 'against the first'), features(results))
+        file.writelines(isosurfaces(results))
+        file.write('## Statistics\n\n')
+        table(file, ('scene', 'tetrahedra', 'what', 's', 'ns a tet'), numbers(results))
         file.write('## Other measurements\n\n')
         table(file, ('scene', 'what', 'case', 'pixels', 'of', 'threads', 'wall, s', 'CPU, s', 'error'), others(results))
 

@@ -69,6 +69,11 @@ extern const Transfer transfer_sharp;  /* two thin opaque peaks, nothing between
 extern const Transfer transfer_linear; /* one piece, one colour */
 extern const Transfer transfer_blend;  /* one piece, along which the colour changes */
 
+/* Where isosurfaces are, of so many: at equal distances over the range of the scalar. */
+static inline double isosurface_value(int i, int count) {
+  return (i + 1.0) / (count + 1);
+}
+
 /* A transfer function that shows the cells with a value above `threshold`, and one that shows all with the same knots.
  */
 Transfer transfer_above(double threshold);

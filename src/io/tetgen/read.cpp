@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// TetGen's own formats. Its readers print, and trust what they read; these check every number and name the line.
+// Reads TetGen's own formats. TetGen's readers print messages, and trust what they read. The functions here check every
+// number, and name the line where it is wrong.
 #include "plc.h"
 
 #include <cerrno>
@@ -13,7 +14,8 @@
 namespace tetcast_tetgen {
 namespace {
 
-// Numbers of a text file, line by line; '#' starts a comment, commas separate like blanks, empty lines do not count.
+// Reads the numbers of a text file line by line. A '#' starts a comment, commas separate numbers as blanks do, and
+// empty lines do not count.
 class Numbers {
 public:
   explicit Numbers(const std::string &path) : path_(path) {
@@ -30,7 +32,8 @@ public:
     at_ = end_of_line_ = next_ = text_.data();
   }
 
-  // Goes to the next line that holds something, unless the present one still does; false at the end of the file.
+  // Goes to the next line that holds something, unless there is something left in the present one. Returns false at the
+  // end of the file.
   bool advance() {
     const char *end = text_.data() + text_.size();
     while (!more()) {
@@ -56,7 +59,7 @@ public:
 
   void skip_line() { at_ = end_of_line_; }
 
-  // Whether the line has another number.
+  // Returns whether there is another number in the line.
   bool more() {
     while (at_ != end_of_line_ && (*at_ == ' ' || *at_ == '\t' || *at_ == '\r' || *at_ == ',')) {
       at_++;
@@ -92,7 +95,7 @@ public:
   }
 
 private:
-  // std::from_chars knows no locale, unlike strtod.
+  // Unlike strtod, std::from_chars does not depend on the locale.
   template <typename T> void number(T &value, const char *what) {
     if (!more()) {
       fail("%s is missing", what);
@@ -126,8 +129,8 @@ int64_t read_points(Numbers &in, std::vector<double> &points, int64_t count, con
   return first;
 }
 
-// The list of nodes, at the start of a file. Returns what the first is called, which all references count from; -1 if
-// the list is empty.
+// Reads the list of nodes at the start of a file. Returns the number of the first node, from which all references
+// count, or -1 if the list is empty.
 int64_t read_nodes(Numbers &in, std::vector<double> &points) {
   in.next_line("the number of points");
   int64_t count = in.integer("the number of points", 0, MAX_COUNT);
@@ -149,7 +152,7 @@ std::string stem_of(const std::string &path) {
   return path.substr(0, path.find_last_of('.'));
 }
 
-// One polygon's corners, which may run over several lines.
+// Reads the corners of one polygon, which may run over several lines.
 void read_corners(Numbers &in, Plc &plc, int64_t first) {
   int64_t last = first + (int64_t)(plc.points.size() / 3) - 1;
   in.next_line("a polygon");
@@ -201,7 +204,7 @@ Plc plc_read(const std::string &path) {
   for (int64_t i = 0; i < facets; i++) {
     read_facet(in, plc, first, smesh);
   }
-  // The lists of holes and regions may be left out; regions only matter to meshes with attributes.
+  // The lists of holes and regions may be missing. Regions only matter to meshes with attributes, so they are not read.
   if (in.advance()) {
     int64_t holes = in.integer("the number of holes", 0, MAX_COUNT);
     in.skip_line();
@@ -232,7 +235,7 @@ Cells cells_read(const std::string &stem) {
     for (int j = 0; j < 4; j++) {
       cells.tetrahedra.push_back((int)(in.integer("a node", first, last) - first));
     }
-    in.skip_line(); // nodes on edges and attributes
+    in.skip_line(); // It holds nodes on edges and attributes, which are not needed.
   }
   return cells;
 }

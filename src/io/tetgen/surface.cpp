@@ -36,8 +36,8 @@ void check_finite(const double *points, int64_t count, const char *what) {
   }
 }
 
-// An open surface encloses nothing, and TetGen would return nothing without a word. Edges of three triangles or more
-// (bodies that touch, membranes) are left to TetGen.
+// Refuses an open surface. It encloses nothing, and TetGen would return nothing without a message. Edges of three
+// triangles or more, as where bodies touch or membranes end, are left to TetGen.
 void check_closed(const Plc &plc) {
   std::vector<uint64_t> edges;
   edges.reserve(plc.corners.size());
@@ -80,7 +80,7 @@ Plc plc_from_surface(const TetcastSurface &surface) {
       }
     }
     if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) {
-      continue; // a line: the triangles on its two sides meet without it
+      continue; // The triangle is only a line, and the triangles on its two sides meet without it.
     }
     int corners[3];
     for (int j = 0; j < 3; j++) {

@@ -17,8 +17,9 @@
 
 #include "io/floating.hpp"
 
-// TetGen 1.5 ends failures here: its own version frees the mesh and throws, whereupon the mesh's destructor frees it
-// again. This one comes before it when the dynamic linker looks the name up.
+// TetGen 1.5 calls this function when it fails. Its own version frees the mesh and throws, whereupon the mesh's
+// destructor frees it again. The version here only throws, and it takes the place of the other, as the dynamic linker
+// finds it first.
 __attribute__((visibility("default"))) void terminatetetgen(tetgenmesh *, int code);
 void terminatetetgen(tetgenmesh *, int code) {
   throw code;
@@ -39,7 +40,7 @@ namespace {
 
 constexpr uint32_t COOKIE = 0x7e76e4;
 
-// TetGen prints on standard output whatever it is told.
+// TetGen prints messages on standard output whatever it is told, so that is redirected while it works.
 class Silence {
 public:
   Silence() {
@@ -67,7 +68,7 @@ private:
   int saved_ = -1;
 };
 
-// TetGen's view of a complex whose arrays stay ours.
+// A complex in the form that TetGen takes. The arrays still belong to us.
 class Input {
 public:
   explicit Input(Plc &plc) : polygons_(plc.polygon_ends.size()), facets_(plc.facets.size()) {
@@ -87,7 +88,7 @@ public:
     io.holelist = plc.holes.empty() ? nullptr : plc.holes.data();
     io.numberofholes = (int)(plc.holes.size() / 3);
   }
-  ~Input() { io.initialize(); } // or it would free them
+  ~Input() { io.initialize(); } // Otherwise its destructor would free our arrays.
   Input(const Input &) = delete;
   Input &operator=(const Input &) = delete;
 
@@ -98,8 +99,9 @@ private:
   std::vector<tetgenio::facet> facets_;
 };
 
-// Coordinates as large as 1e200 would overflow in TetGen, tiny ones underflow: a power of two brings the largest extent
-// into [1, 2), exactly. Returns its exponent. TetGen ends the process if the extent along an axis is 0.
+// Scales the coordinates by a power of two that brings the largest extent into [1, 2), which is exact. In TetGen,
+// coordinates as large as 1e200 would overflow, and tiny ones would underflow. Returns the exponent. An extent of 0
+// along an axis is refused, as it makes TetGen end the process.
 int scale_to_unit(Plc &plc) {
   double low[3], high[3];
   for (std::size_t i = 0; i < plc.points.size(); i++) {
@@ -107,7 +109,7 @@ int scale_to_unit(Plc &plc) {
     low[i % 3] = i < 3 ? x : std::fmin(low[i % 3], x);
     high[i % 3] = i < 3 ? x : std::fmax(high[i % 3], x);
   }
-  double half[3]; // halves, for the difference of two finite numbers may be infinite
+  double half[3]; // These are half of the differences, as the difference of two finite numbers may be infinite.
   for (int j = 0; j < 3; j++) {
     half[j] = high[j] / 2 - low[j] / 2;
   }
@@ -124,7 +126,8 @@ int scale_to_unit(Plc &plc) {
   return exponent;
 }
 
-// The volume that the facets enclose if they all face the same way, as those of surfaces should; an estimate otherwise.
+// Returns the volume that the facets enclose, if they all face the same way, as those of surfaces should. Otherwise it
+// is an estimate.
 double enclosed_volume(const Plc &plc) {
   double volume = 0;
   const double *o = plc.points.data();
@@ -137,7 +140,7 @@ double enclosed_volume(const Plc &plc) {
       }
     }
   }
-  return std::fmin(std::fabs(volume), 8); // the scaled body lies in a box of edges below 2
+  return std::fmin(std::fabs(volume), 8); // The scaled body lies in a box whose edges are shorter than 2.
 }
 
 void tetrahedralize_quietly(tetgenbehavior &behavior, tetgenio &in, tetgenio &out) {
@@ -145,7 +148,7 @@ void tetrahedralize_quietly(tetgenbehavior &behavior, tetgenio &in, tetgenio &ou
   tetrahedralize(&behavior, &in, &out);
 }
 
-// What a code thrown by TetGen means, told from its documentation.
+// Returns what a code that TetGen throws means, as its documentation says.
 [[noreturn]] void explain(int code, Plc &plc, int exponent) {
   switch (code) {
   case 1:
@@ -199,9 +202,9 @@ TetcastStatus fill(TetcastContext *context, Plc &plc, const TetcastTetgenDesc &d
   bool bounds = desc.quality > 0 || desc.max_volume > 0;
   behavior.parse_commandline(bounds ? bounded : switches);
   if (bounds) {
-    behavior.optlevel = 0; // the optimisation at the end keeps neither bound
+    behavior.optlevel = 0; // The optimisation at the end would keep neither of the bounds.
   }
-  // Not in the switches, where the locale decides how numbers are read.
+  // These are not set by switches, because how TetGen reads numbers there depends on the locale.
   if (desc.quality > 0) {
     behavior.minratio = desc.quality;
   }
@@ -240,7 +243,7 @@ void check_desc(const TetcastTetgenDesc &desc) {
   }
 }
 
-// Runs `work(desc)` and turns whatever it throws into a status and a message.
+// Runs `work(desc)`, and turns whatever it throws into a status and a message.
 template <typename Work>
 TetcastStatus fenced(TetcastContext *context, const TetcastTetgenDesc *desc, TetcastMesh **mesh, Work work) {
   const FloatingPoint guard;
@@ -301,7 +304,7 @@ TetcastStatus tetcast_tetgen_mesh_file(TetcastContext *context, const char *path
     if (!ends_with(name, ".poly") && !ends_with(name, ".smesh")) {
       fail(TETCAST_ERROR_ARGUMENT, "%s: not .poly, .smesh, .node or .ele", path);
     }
-    Plc plc = plc_read(name); // its messages name the file already
+    Plc plc = plc_read(name); // Its messages name the file already.
     try {
       return fill(context, plc, settings, mesh);
     } catch (Failure &failure) {

@@ -17,12 +17,13 @@ namespace {
 
 using tcv::PieceMap;
 
-// One array of the whole, and what each piece has of it.
+// An array of the whole grid, and the arrays of the pieces that it is made from.
 struct Column {
   std::string name;
-  std::vector<vtkDataArray *> parts; // null where it is missing
+  std::vector<vtkDataArray *> parts; // A part is null if its piece lacks the array.
   int components = 0, missing = 0, attribute = -1;
-  bool mixed = false, numbers = false; // has no one number of components; identifies points or cells
+  // `mixed`: the parts differ in their number of components. `numbers`: the array numbers points or cells.
+  bool mixed = false, numbers = false;
   vtkSmartPointer<vtkDataArray> whole;
 };
 
@@ -77,7 +78,8 @@ std::vector<Column> columns_of(const std::vector<tcv::Piece> &pieces, TetcastAss
   return columns;
 }
 
-// Makes the array: of the type all parts have, else double; where NaN is needed, of floating-point numbers.
+// Makes the array of the whole. It has the type of its parts if they all have the same one, and else double. If a part
+// is missing, the array has floating-point numbers in any case, because NaN stands for missing values.
 void make_whole(Column *column, int64_t count) {
   vtkDataArray *first = nullptr;
   bool same = true;
@@ -99,7 +101,7 @@ void make_whole(Column *column, int64_t count) {
     column->whole->Fill(std::numeric_limits<double>::quiet_NaN());
 }
 
-// Copies tuples of one part.
+// Copies the tuples of one part into the whole.
 class Copier {
 public:
   Copier(vtkDataArray *from, vtkDataArray *to) : from_(from), to_(to), components_(to->GetNumberOfComponents()) {
@@ -143,8 +145,8 @@ class PointJoiner {
 public:
   PointJoiner(const std::vector<PieceMap> &maps, int64_t count) : maps_(maps), state_(static_cast<size_t>(count)) {}
 
-  // From the last piece to the first, so that the first one's values stay; before, those of points that are called
-  // duplicates.
+  // Goes from the last piece to the first, so that the values of the first one are what remains. The values of points
+  // that are marked as duplicates are copied before all others, so that they remain only where nothing else is known.
   void join(Column *column) {
     std::fill(state_.begin(), state_.end(), static_cast<unsigned char>(UNSET));
     for (const bool duplicates : {true, false}) {
@@ -230,7 +232,7 @@ void join(const tcv::Reading &reading, const char *what, int64_t count, std::vec
     const int index = target->AddArray(column.whole);
     if (column.attribute >= 0 && !target->GetAbstractAttribute(column.attribute))
       target->SetActiveAttribute(index, column.attribute);
-    column.whole = nullptr; // `target` has it now
+    column.whole = nullptr; // `target` owns it now.
   }
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 thread_local tcv::Capture *current = nullptr;
 
-std::mutex mutex; // guards what follows
+std::mutex mutex; // It guards the variables below.
 int captures = 0;
 vtkSmartPointer<vtkOutputWindow> previous;
 int previous_display = 1;
@@ -65,11 +65,12 @@ private:
 vtkStandardNewMacro(Window)
 
     vtkOutputWindow *our_window() {
-  static vtkSmartPointer<Window> window = vtkSmartPointer<Window>::New(); // for good: a thread may still be inside it
+  // It is never destroyed, as another thread may still be inside it.
+  static vtkSmartPointer<Window> window = vtkSmartPointer<Window>::New();
   return window;
 }
 
-// "ERROR: In file.cxx, line 7\nvtkReader (0x55): Bad thing\nhappened.\n\n" → "Bad thing happened."
+// Turns "ERROR: In file.cxx, line 7\nvtkReader (0x55): Bad thing\nhappened.\n\n" into "Bad thing happened."
 std::string tidy(const char *text) {
   const char *start = text;
   if (std::strstr(text, ": In ") || std::strstr(text, ":  In ")) {
@@ -105,7 +106,7 @@ Capture::Capture() {
     previous = vtkOutputWindow::GetInstance();
     vtkOutputWindow::SetInstance(our_window());
     previous_display = vtkObject::GetGlobalWarningDisplay();
-    vtkObject::GlobalWarningDisplayOn(); // off, readers fail without a sign
+    vtkObject::GlobalWarningDisplayOn(); // If warnings were off, readers would fail without a sign.
 #ifdef TETCAST_VTK_LOGURU
     previous_verbosity = loguru::g_stderr_verbosity;
     vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
@@ -152,15 +153,16 @@ std::string Doubt::error() const {
 
 void Capture::add(const char *text, bool is_error) noexcept {
   try {
-    // Says only that a note in the file belongs to a part of VTK that isn't loaded: nothing that concerns the mesh.
+    // This message only says that a note in the file belongs to a part of VTK that is not loaded. The mesh does not
+    // depend on it.
     if (!is_error && std::strstr(text, "Could not locate key"))
       return;
-    // Follows the error itself, or an error code, and is a page of addresses.
+    // This message follows the error itself, or an error code, and is a page of addresses that help nobody.
     const bool says_nothing = std::strstr(text, "returned failure for request") != nullptr;
     std::string &first = is_error ? error_ : warning_;
     if (first.empty() && !says_nothing)
       first = tidy(text);
-  } catch (...) { // out of memory: that something was said still counts
+  } catch (...) { // Memory has run out. That something was said still counts.
   }
   if (is_error)
     failed_ = true;

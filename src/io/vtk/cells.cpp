@@ -17,13 +17,14 @@
 
 namespace {
 
-enum Way { IGNORED, CUT, REFUSED }; // whether a cell becomes tetrahedra
+// These say what is done with a cell: nothing, it is cut into tetrahedra, or the file is refused.
+enum Way { IGNORED, CUT, REFUSED };
 
 struct CellType {
   int id;
   const char *name;
   Way way;
-  int points; // 0: any number
+  int points; // 0 stands for any number.
 };
 
 const CellType cell_types[] = {
@@ -101,9 +102,9 @@ const CellType *find_type(int id) {
   return nullptr;
 }
 
-using TypeTable = std::array<const CellType *, 256>; // null: no such type
+using TypeTable = std::array<const CellType *, 256>; // An entry is null if there is no such type.
 
-// Counts the types and refuses cells that nothing could be made of.
+// Counts the cells of each type, and refuses a mesh that no tetrahedra could be made from.
 void survey(const char *path, vtkUnstructuredGrid *grid, tcv::Tetrahedra *result) {
   const vtkUnsignedCharArray *types = grid->GetCellTypesArray();
   const int64_t cells = grid->GetNumberOfCells();
@@ -151,8 +152,8 @@ void survey(const char *path, vtkUnstructuredGrid *grid, tcv::Tetrahedra *result
   }
 }
 
-// A view of numbers of any type; copied to `storage` if they are of one that TetcastType lacks. None is a view of
-// nothing.
+// Returns a view of numbers of any type. If TetcastType lacks their type, they are copied to `storage` first. Without
+// an array the view is empty.
 TetcastArray numbers_of(vtkDataArray *array, std::vector<double> *storage) {
   if (!array)
     return {};
@@ -176,7 +177,7 @@ void remember(void *user, TetcastSeverity, const char *text) {
 
 void cut_all(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, const tcv::CutOptions &options,
              tcv::Tetrahedra *result) {
-  std::vector<double> orders, rational; // must outlive the call
+  std::vector<double> orders, rational; // These must outlive the call that reads them.
   TetcastCellsDesc desc = tetcast_cells_desc_default();
   desc.vertices = tcv::view_of(points);
   desc.types = grid->GetCellTypesArray()->GetPointer(0);
@@ -197,7 +198,7 @@ void cut_all(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, 
   desc.subdivision = options.subdivision;
   desc.sources = grid->GetCellData()->GetNumberOfArrays() > 0;
 
-  // The library's words shall begin with the file's name: a context of our own catches them.
+  // Messages of the library shall begin with the name of the file, so a context of our own catches them.
   std::string words;
   TetcastContextDesc own = tetcast_context_desc_default();
   own.threads = options.threads;
@@ -217,9 +218,10 @@ void cut_all(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, 
   tetcast_cut_info(cut, &result->info);
 }
 
-// Programs don't agree about the order of a wedge's 21 nodes behind its six corners. For each place of VTK's order, the
-// corners in whose middle its node is, if the wedge is straight, as bits; and which node that is for VTK, with faces in
-// Exodus's way but the sides first, and for Exodus.
+// A wedge of 21 nodes has 15 of them behind its six corners, and programs do not agree about their order. This table
+// has a row for each place in the order of VTK. `corners` is a set of bits: in a straight wedge, the node lies in the
+// middle of these corners. `node` is the index of that node in three orders: that of VTK, that of Exodus but with the
+// sides before the other faces, and that of Exodus.
 constexpr int WEDGE_NODES = 21;
 struct WedgePlace {
   unsigned corners;
@@ -241,7 +243,8 @@ const std::array<WedgePlace, WEDGE_NODES - 6> wedge_places = {{{003, {6, 6, 6}},
                                                                {055, {19, 17, 19}},
                                                                {077, {20, 20, 15}}}};
 
-// How far nodes are from where they would be in a straight wedge, if they come in this order: the sum of squares.
+// Returns how far the nodes are from where they would be in a straight wedge, if they come in this order: the sum of
+// the squared distances.
 double disorder(vtkDataArray *points, const vtkIdType *nodes, size_t order) {
   double sum = 0;
   for (const WedgePlace &place : wedge_places) {
@@ -263,7 +266,8 @@ double disorder(vtkDataArray *points, const vtkIdType *nodes, size_t order) {
   return sum;
 }
 
-// Puts the nodes of each wedge of 21 in VTK's order, from the order in which they are closest to where they should be.
+// Puts the nodes of each wedge of 21 nodes in the order of VTK. They are taken to come in the order in which they are
+// closest to their places in a straight wedge.
 void order_wedges(vtkUnstructuredGrid *grid, vtkDataArray *points) {
   for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell) {
     vtkIdType size;
@@ -274,7 +278,7 @@ void order_wedges(vtkUnstructuredGrid *grid, vtkDataArray *points) {
     grid->GetCells()->GetCellAtId(cell, size, nodes);
     if (std::any_of(nodes, nodes + size,
                     [&](vtkIdType node) { return node < 0 || node >= points->GetNumberOfTuples(); }))
-      continue; // is told of later
+      continue; // The index is reported later.
     size_t best = 0;
     for (size_t order = 1; order < 3; ++order) {
       if (disorder(points, nodes, order) < disorder(points, nodes, best))
@@ -289,7 +293,7 @@ void order_wedges(vtkUnstructuredGrid *grid, vtkDataArray *points) {
   }
 }
 
-// Puts the vertices that were added after the points.
+// Appends the vertices that cutting has added to the points.
 void add_points(const tcv::Tetrahedra &tetrahedra, vtkDataArray *points) {
   const int64_t added = tetrahedra.info.added_vertices, count = points->GetNumberOfTuples();
   if (added == 0)

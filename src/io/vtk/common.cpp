@@ -27,7 +27,8 @@ void fail(TetcastStatus status, const char *format, ...) {
   va_end(arguments);
   if (length < static_cast<int>(sizeof text))
     throw Failure{status, text};
-  std::string whole(static_cast<size_t>(length) + 1, '\0'); // long lists of array names
+  // The text is longer than usual, as it has a list of many array names.
+  std::string whole(static_cast<size_t>(length) + 1, '\0');
   va_start(arguments, format);
   std::vsnprintf(&whole[0], whole.size(), format, arguments);
   va_end(arguments);
@@ -94,7 +95,7 @@ static std::string word_at(const std::string &text, size_t *position) {
   return text.substr(start, *position - start);
 }
 
-// The value of attribute type of element VTKFile; "" if there is none.
+// Returns the value of the attribute `type` of the element VTKFile, or "" if there is none.
 static std::string xml_type(const std::string &head) {
   const size_t element = head.find("<VTKFile");
   const size_t end = head.find('>', element);
@@ -111,7 +112,7 @@ static std::string xml_type(const std::string &head) {
   return close == std::string::npos ? "" : tag.substr(quote + 1, close - quote - 1);
 }
 
-// Title, ASCII or BINARY, then "DATASET type".
+// A legacy file begins with a title and the word ASCII or BINARY, and then says "DATASET type".
 static std::string legacy_type(const std::string &head) {
   size_t at = 0;
   for (int line = 0; line < 2 && at != std::string::npos; ++line)
@@ -123,7 +124,7 @@ static std::string legacy_type(const std::string &head) {
   return keyword == "DATASET" ? upper_case(word_at(head, &at)) : keyword;
 }
 
-// "FORMAT", on a line of its own, and then "type: ensight".
+// An EnSight case has "FORMAT" on a line of its own, and then "type: ensight".
 static bool is_ensight(const std::string &head) {
   size_t at = begins_with(head, "FORMAT") ? 0 : head.find("\nFORMAT");
   if (at == std::string::npos)
@@ -145,7 +146,7 @@ std::string file_kind(const std::string &head) {
     return "Gmsh";
   if (begins_with(head, "# vtk DataFile"))
     return "vtk " + legacy_type(head);
-  if (begins_with(head, "\x89HDF")) { // the names of what is at the top come early
+  if (begins_with(head, "\x89HDF")) { // The names of the top-level groups come early in the file.
     const auto has = [&](const char *name) { return head.find(name) != std::string::npos; };
     return has("VTKHDF") ? "HDF5 VTKHDF" : has("CGNSLibraryVersion") ? "HDF5 CGNS" : "HDF5";
   }
@@ -185,7 +186,8 @@ bool parse_number(const char *first, const char *last, double *value) {
   const auto [end, error] = std::from_chars(first, last, *value);
   if (end != last || first == last)
     return false;
-  // Beyond double's range: tiny is zero, huge is an infinity that is refused later.
+  // The number is beyond the range of double: a tiny one becomes zero, and a huge one becomes an infinity, which is
+  // refused later.
   if (error == std::errc::result_out_of_range) {
     const std::string text(first, last);
     *value = text.find("e-") != std::string::npos || text.find("E-") != std::string::npos ? 0 : HUGE_VAL;
@@ -235,7 +237,7 @@ int64_t first_nonfinite(vtkDataArray *data) {
     return find_nonfinite(floats->GetPointer(0), count);
   if (auto *doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(data))
     return find_nonfinite(doubles->GetPointer(0), count);
-  return -1; // integers
+  return -1; // These are integers.
 }
 
 void check_dimension(const char *path, vtkPoints *points) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Collecting the grids that VTK's objects are made of.
+// Collects the grids that the objects of VTK consist of.
 #include "contents.hpp"
 
 namespace tcv {

@@ -51,7 +51,7 @@ static void stretch_points(const double factors[3], TetcastDataset *dataset) {
 static void take_arrays(vtkDataSetAttributes *attributes, TetcastAssociation association, int64_t count,
                         TetcastDataset *dataset) {
   for (int i = 0; i < attributes->GetNumberOfArrays(); ++i) {
-    vtkDataArray *data = attributes->GetArray(i); // null for strings
+    vtkDataArray *data = attributes->GetArray(i); // It is null for an array of strings.
     if (!data || data->GetNumberOfComponents() < 1)
       continue;
     const std::string name = data->GetName() ? data->GetName() : "";
@@ -62,12 +62,13 @@ static void take_arrays(vtkDataSetAttributes *attributes, TetcastAssociation ass
   }
 }
 
-// Fails where a cell's point is further away than can be computed with: the library would, but does not know the file.
+// Fails if a point of a cell is so far away that nothing could be computed with it. The library would notice as well,
+// but it does not know the name of the file.
 static void check_reach(const TetcastDataset *dataset) {
   const double most = 1e300;
   auto *points = vtkDoubleArray::FastDownCast(dataset->points);
   if (!points)
-    return; // single precision doesn't reach that far
+    return; // Single precision does not reach that far.
   const double *values = points->GetPointer(0);
   const vtkIdType count = points->GetNumberOfValues();
   if (std::none_of(values, values + count, [&](double value) { return std::fabs(value) > most; }))
@@ -91,7 +92,7 @@ static bool has_array(const TetcastDataset *dataset, const ArrayName &array) {
                      [&](const Array &one) { return one.association == array.association && one.name == array.name; });
 }
 
-// Cell arrays by whose name a point array would be found.
+// Adds ":cell" to the selector of each cell array whose name would find a point array.
 static void tell_apart(TetcastDataset *dataset) {
   for (Array &array : dataset->arrays) {
     if (array.association == TETCAST_CELL && has_array(dataset, {TETCAST_POINT, array.name}))
@@ -99,8 +100,8 @@ static void tell_apart(TetcastDataset *dataset) {
   }
 }
 
-// Arrays that can't be read are left out with a warning, if there is any other; those that were not asked for, without
-// a word.
+// Leaves out the arrays that can't be read, with a warning, as long as there is any other array. Those that were not
+// asked for are left out without a warning.
 static void report_unread(const TetcastDataset *dataset, const char *only) {
   const UnreadArray *first = nullptr;
   std::string names;
@@ -134,7 +135,7 @@ static Contents read_pieces_of(const Reading &reading) {
   Contents contents;
   read_contents(reading, &contents);
   if (contents.times.empty())
-    choose_step(reading.path, *reading.desc, {}); // fails unless it is the only one
+    choose_step(reading.path, *reading.desc, {}); // This fails unless the file has no other step.
   if (block && (contents.pieces.empty() || contents.blocks.empty())) {
     std::string list;
     for (const std::string &name : contents.blocks)
@@ -157,7 +158,8 @@ static bool has_arrays(vtkDataSetAttributes *attributes) {
   return false;
 }
 
-// Where nothing but its blocks tells one part of a mesh from another, the number of each cell's block is an array.
+// Adds an array with the number of each cell's block, if nothing else in the file tells one part of the mesh from
+// another.
 static void number_blocks(std::vector<Piece> *pieces) {
   bool several = false;
   for (const Piece &piece : *pieces) {
@@ -229,7 +231,7 @@ static void read_dataset(TetcastContext *context, const char *path, const Tetcas
   take_points(grid, dataset);
   stretch_points(desc.stretch, dataset);
   {
-    const Capture capture; // cutting may complain as well
+    const Capture capture; // Cutting cells may make VTK complain as well.
     CutOptions options;
     options.subdivision = desc.subdivision;
     options.threads = tetcast_context_threads(context);
@@ -247,7 +249,7 @@ static void read_dataset(TetcastContext *context, const char *path, const Tetcas
   report_unread(dataset, desc.only);
 }
 
-static constexpr uint32_t desc_cookie = 0x74636473; // "tcds"
+static constexpr uint32_t desc_cookie = 0x74636473; // These bytes spell "tcds".
 
 TetcastDatasetDesc tetcast_dataset_desc_default(void) {
   TetcastDatasetDesc desc = {};

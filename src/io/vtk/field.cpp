@@ -13,15 +13,15 @@ static const int MAGNITUDE = -1;
 
 struct Selection {
   const Array *array = nullptr;
-  int component = MAGNITUDE; // 0 for arrays of one
-  bool whole = true;         // nothing was said about components
+  int component = MAGNITUDE; // It is 0 for an array of one component.
+  bool whole = true;         // True if the selector says nothing about components.
 };
 
 static double scalar_of(vtkDataArray *data, vtkIdType tuple, int component);
 
 // ── the array drawn when none is named ──
 
-// Whether what is drawn of an array has two values.
+// Returns whether the numbers that would be drawn of an array differ from each other.
 static bool varies(const TetcastDataset *dataset, const Array &array) {
   const int component = array.data->GetNumberOfComponents() == 1 ? 0 : MAGNITUDE;
   const auto *cells =
@@ -40,8 +40,9 @@ static bool varies(const TetcastDataset *dataset, const Array &array) {
   return false;
 }
 
-// The active scalars; else of those that vary, or of all if none does, those of points before those of cells, and of
-// each scalars before vectors; what numbers points or cells comes last.
+// Returns the array that is drawn if none is named. The active scalars come first. Without them, arrays that vary come
+// before constant ones, arrays of points before arrays of cells, and scalars before vectors. Arrays that number points
+// or cells come last.
 static const Array *default_array(const TetcastDataset *dataset) {
   const Array *best = nullptr;
   int best_rank = 0;
@@ -60,20 +61,20 @@ static const Array *default_array(const TetcastDataset *dataset) {
 
 // ── the one that is named ──
 
-// What a selector may say behind the array's name.
+// What a selector may say behind the name of the array. Both are empty if it does not.
 struct Suffixes {
-  std::string association, component; // empty: not said
+  std::string association, component; // Empty if nothing is said.
 };
 
 static const Array *find_array(const TetcastDataset *dataset, const std::string &name, const std::string &association) {
-  for (const Array &array : dataset->arrays) { // point arrays come first
+  for (const Array &array : dataset->arrays) { // Arrays of points come first.
     if (array.name == name && (association.empty() || association == word_of(array.association)))
       return &array;
   }
   return nullptr;
 }
 
-// The longest name there is that the selector begins with, and what comes behind.
+// Returns the array with the longest name that the selector begins with, and what the selector says behind the name.
 static const Array *find_named(const TetcastDataset *dataset, const std::string &selector, Suffixes *suffixes) {
   std::string name = selector;
   for (;;) {
@@ -94,9 +95,9 @@ static const Array *find_named(const TetcastDataset *dataset, const std::string 
   }
 }
 
-// Fails, and says what there is instead, or why it can't be read.
+// Fails with a message that lists the arrays there are, or says why the array that is named can't be read.
 [[noreturn]] static void unknown(const TetcastDataset *dataset, const std::string &selector) {
-  std::string list; // of all there are
+  std::string list; // It names all arrays that there are.
   for (const Array &array : dataset->arrays) {
     const int components = array.data->GetNumberOfComponents();
     std::string about = array.association == TETCAST_CELL ? "cells" : "";
@@ -126,7 +127,8 @@ static std::string lower_case(std::string text) {
   return text;
 }
 
-// The names of an array's components: the file's, or those that are usual. Empty where there are none.
+// Returns the names of an array's components: those that the file gives, or else the usual ones. The list is empty if
+// there are neither.
 static std::vector<std::string> component_names(vtkDataArray *data) {
   static const std::vector<std::string> usual[] = {{"x", "y"},
                                                    {"x", "y", "z"},
@@ -148,7 +150,7 @@ static std::vector<std::string> component_names(vtkDataArray *data) {
   return any ? names : std::vector<std::string>();
 }
 
-// The component that a suffix means: a number, a name in any case of letters, or "mag".
+// Returns the component that a suffix stands for. The suffix is a number, a name in upper or lower case, or "mag".
 static int find_component(const TetcastDataset *dataset, const Array &array, const std::string &part) {
   if (part == "mag")
     return MAGNITUDE;
@@ -190,7 +192,7 @@ static double length_of(const double *values, int count) {
   }
   if ((sum > 1e-280 && sum < 1e280) || largest == 0 || !std::isfinite(largest))
     return std::sqrt(sum);
-  sum = 0; // the squares over- or underflow
+  sum = 0; // The sum of squares has overflowed or underflowed, so it is found again from scaled numbers.
   for (int i = 0; i < count; ++i)
     sum += (values[i] / largest) * (values[i] / largest);
   return largest * std::sqrt(sum);
@@ -207,7 +209,7 @@ static double scalar_of(vtkDataArray *data, vtkIdType tuple, int component) {
   return length_of(values, components);
 }
 
-// The selected scalar of every tuple of the file, as double.
+// Returns the selected scalar of every tuple of the array in the file, as double.
 static std::vector<double> computed(const Selection &selection) {
   vtkDataArray *data = selection.array->data;
   std::vector<double> values(static_cast<size_t>(data->GetNumberOfTuples()));
@@ -216,8 +218,9 @@ static std::vector<double> computed(const Selection &selection) {
   return values;
 }
 
-// What the cells that use each point have on average: the selected scalar of a cell array, as one of points. Those that
-// no cell uses get the value of another: they are not drawn, and no value is missing.
+// Turns the selected scalar of a cell array into one of points: each point gets the mean over the cells that use it.
+// Points that no cell uses get the value of some other point. As they are not drawn, any value will do, and so no value
+// counts as missing.
 static std::vector<double> averaged(const TetcastDataset *dataset, const Selection &selection) {
   vtkDataArray *data = selection.array->data;
   const bool whole = selection.component == MAGNITUDE;
@@ -227,7 +230,7 @@ static std::vector<double> averaged(const TetcastDataset *dataset, const Selecti
       static_cast<size_t>(dataset->points->GetNumberOfTuples() - dataset->tetrahedra.info.added_vertices);
   std::vector<double> sums(points * width), tuple(width);
   std::vector<int32_t> counts(points);
-  std::vector<int64_t> last(points, -1); // the cell that was there last: some have a point twice
+  std::vector<int64_t> last(points, -1); // The cell that was at each point last, because some cells list a point twice.
   for (vtkIdType cell = 0; cell < data->GetNumberOfTuples(); ++cell) {
     if (!is_volume(dataset->types->GetValue(cell)))
       continue;
@@ -253,7 +256,7 @@ static std::vector<double> averaged(const TetcastDataset *dataset, const Selecti
   double other = 0;
   for (size_t i = points; i-- > 0;) {
     for (size_t k = 0; k < width; ++k)
-      tuple[k] = sums[i * width + k] / counts[i]; // NaN where there are none
+      tuple[k] = sums[i * width + k] / counts[i]; // This is NaN if no cell uses the point.
     values[i] = whole ? length_of(tuple.data(), components) : tuple[0];
     if (counts[i] > 0)
       other = values[i];
@@ -263,7 +266,7 @@ static std::vector<double> averaged(const TetcastDataset *dataset, const Selecti
   return values;
 }
 
-// The value of its cell for each tetrahedron.
+// Returns, for each tetrahedron, the value of the cell that it was cut from.
 static std::vector<char> gathered(const TetcastArray &values, const TetcastArray &sources) {
   const size_t size = static_cast<size_t>(type_size(values.type));
   const size_t stride = values.stride ? static_cast<size_t>(values.stride) : size;
@@ -276,7 +279,8 @@ static std::vector<char> gathered(const TetcastArray &values, const TetcastArray
   return result;
 }
 
-// The values of all vertices, those that cutting added last: float stays float, anything else becomes double.
+// Returns the values of all vertices, the last of which are those that cutting has added. Values of type float stay
+// float, and all others become double.
 static std::vector<char> extended(const TetcastArray &values, const Tetrahedra &tetrahedra) {
   const size_t count = static_cast<size_t>(values.count), added = static_cast<size_t>(tetrahedra.info.added_vertices);
   const size_t size = static_cast<size_t>(type_size(values.type)), stride = static_cast<size_t>(values.stride);

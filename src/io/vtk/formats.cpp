@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The formats that volume meshes are read from: one table, which everything that lists formats takes them from.
+// The formats that volume meshes are read from. Whatever lists formats takes them from the table in this file.
 #include "formats.hpp"
 
 #include <cstring>
@@ -10,12 +10,12 @@
 
 namespace {
 
-// Content tells (file_kind); the extensions only where content is silent. A row without a name is another kind of the
-// format above it.
+// A file's content tells its format (file_kind), and its extension does only if the content does not. A row without a
+// name is another kind of the format in the row above it.
 const struct {
   const char *name, *extensions, *kind;
   void (*read)(const tcv::Reading &reading, tcv::Contents *contents);
-  const char *plugin; // the program that reads it, tetcast-vtk-…; null: none
+  const char *plugin; // The program tetcast-vtk-PLUGIN reads the format; null: this library does.
 } formats[] = {
     {"VTK XML, unstructured grid", ".vtu", "VTKFile UnstructuredGrid", tcv::read_vtu, nullptr},
     {"VTK XML, structured grid", ".vti .vtr .vts", "VTKFile ImageData", tcv::read_vti, nullptr},
@@ -40,7 +40,7 @@ const struct {
     {nullptr, "", "ADF", tcv::read_cgns, "cgns"},
     {"OpenFOAM", ".foam", "OpenFOAM", tcv::read_openfoam, "openfoam"},
     {"Gmsh 1, 2 and 4.1", ".msh", "Gmsh", tcv::read_gmsh, nullptr},
-    {"TetGen", ".node .ele", "TetGen", tcv::read_tetgen, nullptr}, // by extension alone
+    {"TetGen", ".node .ele", "TetGen", tcv::read_tetgen, nullptr}, // Only the extension tells it.
 };
 
 bool one_of(const char *path, const char *extensions) {
@@ -54,7 +54,7 @@ bool one_of(const char *path, const char *extensions) {
   return false;
 }
 
-// Whether a file of this kind is all of one block: the other kinds may hold blocks within.
+// Returns whether a file of this kind consists of one block alone. Files of the other kinds may have several.
 bool is_one_block(const std::string &kind) {
   const bool xml =
       kind.compare(0, 8, "VTKFile ") == 0 && kind != "VTKFile vtkMultiBlockDataSet" && kind != "VTKFile Collection";
@@ -71,7 +71,8 @@ namespace tcv {
 
 void read_contents(const Reading &reading, Contents *contents) {
   const char *path = reading.path.c_str();
-  const std::string kind = has_extension(path, ".foam") ? "OpenFOAM" : file_kind(file_head(path)); // those are empty
+  // OpenFOAM's file is empty, so its extension tells.
+  const std::string kind = has_extension(path, ".foam") ? "OpenFOAM" : file_kind(file_head(path));
   std::string extensions;
   for (const auto &format : formats) {
     if (format.name)

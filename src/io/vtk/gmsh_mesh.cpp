@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gmsh's meshes, MSH 1, 2 and 4.1, as text and as bytes of either order. Views become arrays, and so do the physical
-// groups.
+// Reads meshes by Gmsh in the formats MSH 1, 2 and 4.1, as text and as bytes of either order. Views become arrays, and
+// so do the physical groups.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -25,8 +25,9 @@
 
 namespace {
 
-// Gmsh numbers the middles of edges by their ends, in rising order, and VTK goes round. Null: as Gmsh has them. What
-// Gmsh's 14-node pyramid has in the middle of its base VTK has in one of 19, of which the rest is not used.
+// These tables reorder the nodes of Gmsh into those of VTK; null stands for the same order. Gmsh numbers the middles of
+// edges by the ends of the edges, in rising order, while VTK goes round the cell. VTK has no pyramid of 14 nodes, so
+// Gmsh's becomes one of 19, of which the last five are not used.
 const short tetrahedron_10[] = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
 const short hexahedron_27[] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  11, 13, 9,  16, 18,
                                19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26};
@@ -35,8 +36,8 @@ const short pyramid_19[] = {0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12, 13, 0, 0, 
 
 struct ElementType {
   int id, nodes;
-  unsigned char type; // VTK's
-  int points;         // that a cell of that type has
+  unsigned char type; // The type of the cell for VTK.
+  int points;         // A cell of that type has so many points.
   const short *order;
 };
 
@@ -62,10 +63,11 @@ const ElementType low_types[] = {
     {19, 13, VTK_QUADRATIC_PYRAMID, 13, pyramid_19},
 };
 
-// Those of third order and above that have all nodes there can be; of lines and surfaces their number is what matters.
+// Elements of third order and above that have all nodes of their order. Lines and surfaces are not read, but the number
+// of their nodes is needed to skip them.
 struct HighOrders {
   unsigned char type;
-  int first, next[10]; // order; identifiers of it and the ones above, 0 at the end
+  int first, next[10]; // The lowest order, then the identifiers of that order and the higher ones; 0 at the end.
 };
 
 const HighOrders high_orders[] = {
@@ -92,7 +94,7 @@ int nodes_of(unsigned char type, int n) {
 }
 
 const std::vector<ElementType> &all_types() {
-  static std::list<std::vector<short>> orders; // that the types refer to
+  static std::list<std::vector<short>> orders; // The types refer to these lists, which therefore stay where they are.
   static const std::vector<ElementType> types = [] {
     std::vector<ElementType> list(std::begin(low_types), std::end(low_types));
     for (const HighOrders &high : high_orders) {
@@ -119,7 +121,7 @@ const ElementType *find_type(int64_t id) {
   return nullptr;
 }
 
-// One section of values, read when it is known which of the steps is wanted.
+// A section of values. It is read only once it is known which of the steps is wanted.
 struct Section {
   enum Kind { OF_NODES, OF_ELEMENTS, OF_ELEMENTS_NODES } kind;
   std::string name;
@@ -136,7 +138,7 @@ public:
 
 private:
   bool old() const { return version_ < 4; }
-  bool first() const { return version_ == 1; } // without $MeshFormat
+  bool first() const { return version_ == 1; } // Files of version 1 lack the section $MeshFormat.
   void read_format();
   void read_entities(bool parts);
   void read_nodes();
@@ -155,9 +157,10 @@ private:
 
   const tcv::Reading &reading_;
   tcv::GmshCursor in_;
-  uint64_t bytes_, taken_ = 0; // of the file; by arrays
+  uint64_t bytes_, taken_ = 0; // The size of the file, and how many bytes arrays have taken so far.
   double version_ = 0;
-  std::map<std::pair<int64_t, int64_t>, int64_t> groups_; // dimension and tag of an entity: its first physical group
+  // The first physical group of an entity, which goes by its dimension and tag.
+  std::map<std::pair<int64_t, int64_t>, int64_t> groups_;
   tcv::GmshTags nodes_, elements_;
   vtkNew<vtkDoubleArray> positions_;
   vtkNew<vtkIdTypeArray> corners_, ends_;
@@ -165,9 +168,9 @@ private:
   vtkNew<vtkIntArray> physical_;
   bool grouped_ = false;
   int64_t last_group_ = 0;
-  std::vector<int64_t> list_; // the nodes of an element
+  std::vector<int64_t> list_; // The nodes of an element.
   std::vector<Section> sections_;
-  std::string section_name_; // of the array that the section being read is of, for messages
+  std::string section_name_; // The section that is being read, for messages.
 };
 
 // ── the mesh ──
@@ -182,7 +185,7 @@ void Reader::read_format() {
         "%s: is of version %g of Gmsh's format; 1, 2 and 4.1 are read, which gmsh -save -format msh41 makes of it",
         reading_.path.c_str(), version_);
   }
-  if ((binary != 0 && binary != 1) || (binary && size != 8)) { // in text the size means nothing
+  if ((binary != 0 && binary != 1) || (binary && size != 8)) { // In text, the size means nothing.
     in_.fail("0 or 1 and numbers of 8 bytes are known, not '%lld %lld'", static_cast<long long>(binary),
              static_cast<long long>(size));
   }
@@ -198,7 +201,8 @@ void Reader::read_format() {
   in_.swap_bytes();
 }
 
-// Which physical groups the points, curves, surfaces and volumes are in; or the parts of these that partitions have.
+// Reads which physical groups the points, curves, surfaces and volumes are in. In a mesh with partitions, it reads the
+// same for the parts that these are divided into.
 void Reader::read_entities(bool parts) {
   if (old())
     in_.fail("version %g has no section of entities", version_);
@@ -230,7 +234,8 @@ void Reader::read_entities(bool parts) {
       for (int64_t k = 0; k < groups; ++k) {
         const int64_t group = in_.integer("the number of a group");
         if (k == 0)
-          groups_[{dimension, tag}] = group < 0 ? -group : group; // negative: turned round
+          // A negative number is that of a group that is turned round.
+          groups_[{dimension, tag}] = group < 0 ? -group : group;
       }
       if (dimension > 0)
         skip_list("bounding entities");
@@ -299,7 +304,8 @@ const ElementType &Reader::type_of(int64_t id) const {
             reading_.path.c_str(), static_cast<long long>(id));
 }
 
-// The nodes come next. In version 2 an element of several groups is listed in each, one after the other.
+// Reads the nodes of an element, which come next. In version 2 an element of several groups is listed once for each of
+// them, one after the other.
 void Reader::add_element(const ElementType &type, int64_t tag, int64_t group) {
   const int64_t cells = types_->GetNumberOfValues(), start = corners_->GetNumberOfValues();
   list_.resize(static_cast<size_t>(type.nodes));
@@ -389,8 +395,8 @@ void Reader::read_elements() {
 
 // ── views ──
 
-// Strings, of which the first is the name, numbers, of which the first is the time, and integers: step, components,
-// count. Then the values.
+// Reads the head of a view: strings, of which the first is the name, numbers, of which the first is the time, and the
+// integers step, number of components and number of values. The values come next.
 void Reader::read_section(const std::string &name, Section::Kind kind) {
   Section section = {kind, "", 0, 0, 0, in_};
   const int64_t strings = in_.text_integer("a number of names");
@@ -429,7 +435,7 @@ void Reader::read_section(const std::string &name, Section::Kind kind) {
   in_.skip_section(name);
 }
 
-// The means of what the elements at a node have there.
+// Returns for each node the mean of the values that its elements have there.
 void Reader::read_corner_values(Section *section, vtkDoubleArray *array) {
   array->FillValue(0);
   std::vector<int32_t> terms(static_cast<size_t>(array->GetNumberOfTuples()), 0);
@@ -460,13 +466,13 @@ void Reader::read_corner_values(Section *section, vtkDoubleArray *array) {
       ++terms[static_cast<size_t>(point)];
     }
   }
-  for (int64_t i = 0; i < array->GetNumberOfTuples(); ++i) { // none: 0/0, which is transparent
+  for (int64_t i = 0; i < array->GetNumberOfTuples(); ++i) { // Without any, 0/0 gives NaN, which is transparent.
     for (int64_t c = 0; c < width; ++c)
       array->SetValue(i * width + c, array->GetValue(i * width + c) / terms[static_cast<size_t>(i)]);
   }
 }
 
-// NaN where the view has no value.
+// Makes an array that is NaN where the view has no value.
 vtkSmartPointer<vtkDoubleArray> Reader::values_of(Section *section) {
   const bool of_elements = section->kind == Section::OF_ELEMENTS;
   const int64_t count = of_elements ? types_->GetNumberOfValues() : positions_->GetNumberOfTuples(),
@@ -495,13 +501,13 @@ vtkSmartPointer<vtkDoubleArray> Reader::values_of(Section *section) {
   return array;
 }
 
-// What failed without the file's name.
+// Returns what the message says without the name of the file in front of it.
 std::string Reader::reason_of(const tcv::Failure &failure) const {
   const std::string place = reading_.path + ": ";
   return failure.text.compare(0, place.size(), place) == 0 ? failure.text.substr(place.size()) : failure.text;
 }
 
-// A section of values, which the mesh is not in need of.
+// Reads a section of values. The mesh does not depend on it, so a failure is noted and the section is left out.
 void Reader::try_section(const std::string &name, Section::Kind kind, tcv::Contents *contents) {
   const tcv::GmshCursor begin = in_;
   section_name_ = "$" + name;
@@ -509,13 +515,13 @@ void Reader::try_section(const std::string &name, Section::Kind kind, tcv::Conte
     read_section(name, kind);
   } catch (const tcv::Failure &failure) {
     in_ = begin;
-    in_.skip_section(name); // which fails where it does not end
+    in_.skip_section(name); // This fails if the section does not end.
     tcv::note_unread(&contents->unread, {kind == Section::OF_ELEMENTS ? TETCAST_CELL : TETCAST_POINT, section_name_},
                      reason_of(failure));
   }
 }
 
-// Of each view the last section that is not after the step; its first, if all are.
+// Adds one section of each view: the last one that is not after the step, or the first one if all are.
 void Reader::add_views(vtkUnstructuredGrid *grid, tcv::Contents *contents) {
   for (const Section &section : sections_)
     contents->times.push_back(section.time);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gmsh lists an element's corners, then the nodes within its edges, within its faces, and inside; those within a face
-// or inside are an element of lower order, listed the same way (Gmsh's reference manual, "Node ordering", and the
-// elements that it writes).
+// Gmsh lists the corners of an element first, then the nodes on its edges, on its faces, and inside. The nodes on a
+// face or inside form an element of lower order, and are listed in the same way (see "Node ordering" in the reference
+// manual of Gmsh, and the elements that Gmsh writes).
 #include "gmsh_order.hpp"
 
 #include <array>
@@ -11,10 +11,10 @@
 
 namespace {
 
-using Place = std::array<int, 3>; // in a lattice of as many segments as the order
+using Place = std::array<int, 3>; // A place in a lattice that has as many segments as the order is.
 using Places = std::vector<Place>;
 
-// From `at` one of `n` equal steps towards each of the others.
+// Returns the place that is one of `n` equal steps away from `at`, towards each of the others.
 Place inwards(const Place &at, std::initializer_list<Place> others, int n) {
   Place result = at;
   for (const Place &other : others) {

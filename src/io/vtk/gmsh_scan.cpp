@@ -54,7 +54,8 @@ bool GmshCursor::next_section(std::string *name) {
 void GmshCursor::end_section(const std::string &name) {
   while (at_ < end_ && blank(*at_))
     ++at_;
-  const std::string wanted = (name == "NOD" || name == "ELM" ? "$END" : "$End") + name; // the first version shouts
+  // Version 1 writes the end in capitals.
+  const std::string wanted = (name == "NOD" || name == "ELM" ? "$END" : "$End") + name;
   if (at_ == end_)
     fail("truncated: '%.40s' is to come", wanted.c_str());
   if (static_cast<size_t>(end_ - at_) < wanted.size() || std::memcmp(at_, wanted.data(), wanted.size()) != 0) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Legacy .vtk files. VTK's own loops over their sections write beyond their memory when counts or cells are damaged,
-// and give up at numbers such as NaN; its functions for single words are sound, and do the work here.
+// Reads legacy .vtk files. VTK's own loops over their sections write beyond their memory if counts or cells are
+// damaged, and give up at numbers such as NaN. Its functions for single words are sound, and are used here.
 #include "common.hpp"
 #include "files.hpp"
 #include "formats.hpp"
@@ -36,16 +36,16 @@ public:
   using vtkDataReader::DecodeString;
 };
 
-// Why an array can't be read. `behind`: the stream is where the next thing begins, as far as one can tell.
+// Why an array can't be read. `behind` says whether the stream is where the next thing begins, as far as one can tell.
 struct Unreadable {
   std::string reason;
   bool behind;
 };
 
-// Types of values by the letters that their names begin with; of those that several fit the first.
+// The types of values, by the letters that their names begin with. If several rows fit a name, the first counts.
 const struct {
   const char *name;
-  int type, size; // VTK's; bytes of a value in the file, 0: eighths of one
+  int type, size; // The type for VTK, and the bytes of a value in the file; 0: values are single bits.
 } value_types[] = {{"bit", VTK_BIT, 0},
                    {"char", VTK_CHAR, 1},
                    {"signed_char", VTK_CHAR, 1},
@@ -115,10 +115,10 @@ public:
   LegacyFile(const LegacyFile &) = delete;
   LegacyFile &operator=(const LegacyFile &) = delete;
 
-  bool next() { return reader_->ReadString(word_) != 0; } // to the next keyword
+  bool next() { return reader_->ReadString(word_) != 0; } // Goes to the next keyword.
   bool is(const char *keyword) { return std::strcmp(reader_->LowerCase(word_), keyword) == 0; }
 
-  // The sections that every dataset may have. False for others.
+  // Reads a section that every dataset may have. Returns false if it is another one.
   bool common_section(vtkPointSet *dataset) {
     if (is("field")) {
       read_field(nullptr);
@@ -181,7 +181,7 @@ public:
     return result;
   }
 
-  // Of structured grids: DIMENSIONS, and what is evenly spaced.
+  // Reads what structured grids have: the section DIMENSIONS, and the sections of evenly spaced grids.
   void dimensions(int result[3]) {
     int64_t points = 1;
     for (int k = 0; k < 3; ++k) {
@@ -206,7 +206,8 @@ public:
     return needed(section, word(section), wanted, 1);
   }
 
-  // From the keyword POINT_DATA or CELL_DATA to the end of the file. Of arrays that can't be read notes are taken.
+  // Reads the attributes, from the keyword POINT_DATA or CELL_DATA to the end of the file. It notes which arrays can't
+  // be read.
   void attributes(vtkDataSet *dataset) {
     vtkDataSetAttributes *target = nullptr;
     int64_t have = 0;
@@ -237,7 +238,7 @@ private:
   std::istream &stream() { return *reader_->GetIStream(); }
   bool binary() { return reader_->GetFileType() == VTK_BINARY; }
 
-  // Reads the attribute whose keyword has been read. False: nothing behind it can be read any more.
+  // Reads the attribute whose keyword has been read. Returns false if nothing behind it can be read any more.
   bool try_attribute(vtkDataSetAttributes *target, int64_t have) {
     name_ = word_;
     std::string reason;
@@ -252,7 +253,7 @@ private:
     }
     lose(reason);
     stream().clear();
-    while (!binary() && next()) { // to what begins next
+    while (!binary() && next()) { // Goes to where the next thing begins.
       if (!is_attribute_keyword(word_))
         continue;
       stream().seekg(-static_cast<std::streamoff>(std::strlen(word_)), std::ios::cur);
@@ -302,7 +303,7 @@ private:
     damaged("the keyword", word_);
   }
 
-  // SCALARS name type [components], then, as a rule, LOOKUP_TABLE name.
+  // Reads "SCALARS name type [components]", which "LOOKUP_TABLE name" follows as a rule.
   void read_scalars(vtkDataSetAttributes *target, int64_t have) {
     char line[256], name[256] = "", type[256] = "";
     int components = 1;
@@ -313,7 +314,8 @@ private:
     add(target, values(type, have, components), vtkDataSetAttributes::SCALARS);
   }
 
-  // The line LOOKUP_TABLE, if it comes next. If not, the stream is where it was, at the end of the line before.
+  // Reads the line LOOKUP_TABLE if it comes next. If it does not, the stream stays where it was, at the end of the line
+  // before.
   void skip_table_name() {
     static const std::string keyword = "lookup_table";
     std::istream &in = stream();
@@ -326,7 +328,7 @@ private:
       if (!(letters.empty() && c <= ' '))
         letters += static_cast<char>(c);
       else if (binary())
-        break; // a number may be anything
+        break; // Anything may be a number here.
     }
     in.clear();
     if (lower_case(letters) == keyword) {
@@ -337,13 +339,14 @@ private:
     in.seekg(-1, std::ios::cur);
   }
 
-  // FIELD name count, then for each array its name, components, tuples and type. No target: only passes.
+  // Reads "FIELD name count", and then for each array its name, its numbers of components and tuples, and its type.
+  // Without a target it passes over the arrays.
   void read_field(vtkDataSetAttributes *target) {
     word("FIELD");
     const int64_t arrays = count("FIELD");
     for (int64_t i = 0; i < arrays; ++i) {
       std::string name = word("FIELD");
-      while (is("metadata")) { // of the array before
+      while (is("metadata")) { // These belong to the array before.
         skip_metadata();
         name = word("FIELD");
       }
@@ -369,7 +372,7 @@ private:
     values(binary() ? "unsigned_char" : "float", count("LOOKUP_TABLE"), 4);
   }
 
-  void skip_metadata() { // ends with an empty line
+  void skip_metadata() { // They end with an empty line.
     char line[256];
     reader_->ReadLine(line);
     while (reader_->ReadLine(line) && line[0] != '\0') {}
@@ -385,7 +388,7 @@ private:
     return numbers;
   }
 
-  // What the mesh is not without.
+  // Reads values that a mesh can't do without, and fails if that is not possible.
   Array needed(const char *section, const std::string &type, int64_t tuples, int64_t components) {
     try {
       const Array array = values(type, tuples, components);
@@ -398,10 +401,11 @@ private:
     }
   }
 
-  // The values that come next; null for strings, which are passed over.
+  // Reads the values that come next. Returns null for strings, which are passed over.
   Array values(const std::string &type_name, int64_t tuples, int64_t components) {
     const std::string lower = lower_case(type_name);
-    if (components < 1 || components > 8 * size_ || tuples > 8 * size_ / components) { // bits: eight a byte
+    // A byte holds eight bits, which are values, too.
+    if (components < 1 || components > 8 * size_ || tuples > 8 * size_ / components) {
       throw Unreadable{std::to_string(tuples) + " × " + std::to_string(components) +
                            " values are more than the file can hold",
                        false};
@@ -430,12 +434,12 @@ private:
     return array;
   }
 
-  // Behind the end of the line, the byte of most weight first.
+  // Reads values as bytes. They begin behind the end of the line, and each has its most significant byte first.
   Array binary_values(int type, int size, int64_t tuples, int64_t components) {
     std::istream &in = stream();
     for (int c = in.get(); c != '\n' && c != EOF; c = in.get()) {}
     const int64_t count = tuples * components;
-    const bool narrow = type == VTK_ID_TYPE; // written as four bytes
+    const bool narrow = type == VTK_ID_TYPE; // VTK writes these as four bytes.
     Array array = make_array(narrow ? VTK_INT : type, tuples, components);
     const int64_t bytes = size ? count * size : (count + 7) / 8;
     if (bytes > 0)
@@ -463,7 +467,8 @@ private:
     const std::string reason =
         "line " + std::to_string(line()) + ": '" + bad.substr(0, 40) + "' is not a number of its type";
     std::string word = bad;
-    for (int64_t i = have + 1;; ++i) { // the rest of the values; if one is a keyword, there are fewer
+    // Passes over the rest of the values. If one is a keyword, there are fewer than the file says.
+    for (int64_t i = have + 1;; ++i) {
       if (is_attribute_keyword(word)) {
         stream().seekg(-static_cast<std::streamoff>(word.size()), std::ios::cur);
         throw Unreadable{word == bad ? "it has " + std::to_string(have) + " of " + std::to_string(count) + " values"
@@ -476,7 +481,8 @@ private:
     throw Unreadable{reason, true};
   }
 
-  // Single precision does not hold all that stands in files which claim it: then it is double.
+  // Reads values as text. Some files say that their values are float, though these have more digits or a larger range;
+  // the array is then of double.
   Array text_values(int type, int64_t tuples, int64_t components) {
     const int64_t count = tuples * components;
     const auto start = stream().tellg();
@@ -499,7 +505,8 @@ private:
     return array;
   }
 
-  // One a line; or each behind its length, whose first two bits say how many bytes that has.
+  // Passes over strings. In text there is one a line. In binary, each has its length in front, whose first two bits say
+  // how many bytes the length itself has.
   void skip_strings(int64_t count) {
     std::istream &in = stream();
     std::string line;
@@ -522,7 +529,7 @@ private:
       throw Unreadable{"it ends early", false};
   }
 
-  // The line that the stream has come to, from 1.
+  // Returns the number of the line that the stream has come to, counted from 1.
   int64_t line() {
     std::istream &in = stream();
     in.clear();
@@ -544,7 +551,7 @@ private:
   }
 
   void begin_array(const std::string &name) {
-    std::vector<char> decoded(name.size() + 1); // %20 and the like
+    std::vector<char> decoded(name.size() + 1); // Names have %20 and the like in them.
     reader_->DecodeString(decoded.data(), name.c_str());
     name_ = decoded.data();
   }
@@ -582,11 +589,12 @@ private:
   std::vector<tcv::UnreadArray> *unread_;
   vtkNew<Reader> reader_;
   char word_[256] = "";
-  std::string name_; // of the array that is being read
+  std::string name_; // The name of the array that is being read.
   TetcastAssociation association_ = TETCAST_POINT;
 };
 
-// Polyhedra are written as a stream: number of faces, then for each face its number of points and the points.
+// Checks polyhedra. They are written as a stream: the number of faces, and then for each face its number of points and
+// the points.
 void check_face_streams(const char *path, vtkUnsignedCharArray *types, vtkCellArray *cells, int64_t point_count) {
   for (int64_t i = 0; i < cells->GetNumberOfCells(); ++i) {
     if (types->GetValue(i) != VTK_POLYHEDRON)
@@ -609,7 +617,7 @@ void check_face_streams(const char *path, vtkUnsignedCharArray *types, vtkCellAr
   }
 }
 
-// Offsets within the list; indices are checked by whoever uses them.
+// Checks that offsets lie within the list. Indices are checked by those who use them.
 void check_offsets(const char *path, vtkCellArray *cells) {
   tcv::check_cells(path, cells, INT64_MAX, "cell");
 }
@@ -631,7 +639,7 @@ vtkSmartPointer<vtkUnstructuredGrid> read_grid(const char *path, std::vector<tcv
                   static_cast<long long>(types->GetNumberOfValues()),
                   static_cast<long long>(cells ? cells->GetNumberOfCells() : 0));
       }
-      // Only now the grid knows its cells: polyhedra hide other numbers in their list of points.
+      // The grid learns of its cells only now, as the lists of points of polyhedra have other numbers in them.
       check_offsets(path, cells);
       check_face_streams(path, types, cells, grid->GetNumberOfPoints());
       grid->SetCells(types, cells);
@@ -690,7 +698,7 @@ vtkSmartPointer<vtkDataSet> read_rectilinear(LegacyFile *file) {
     }
   }
   vtkDataArray *const axes[3] = {grid->GetXCoordinates(), grid->GetYCoordinates(), grid->GetZCoordinates()};
-  for (int k = 0; k < 3; ++k) { // VTK has one of a single value where there is none
+  for (int k = 0; k < 3; ++k) { // VTK makes an array of a single value if there is none.
     if (axes[k]->GetNumberOfTuples() != dimensions[k])
       file->damaged("the list of coordinates");
   }
@@ -747,7 +755,7 @@ vtkSmartPointer<vtkPolyData> read_legacy_surface(const char *path) {
     else if (file.is("vertices") || file.is("lines"))
       file.cells("VERTICES or LINES");
     else if (file.is("cell_data") || file.is("point_data"))
-      break; // a surface is its shape here
+      break; // The dataset is a surface, and its shape is all that is needed.
     else
       file.damaged("a section");
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of XML that list other files: pieces, blocks, time steps.
+// Reads XML files that list other files: pieces, blocks and time steps.
 #include "lists.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 using Element = vtkSmartPointer<vtkXMLDataElement>;
 
-// The element below VTKFile that is named as its type says, or `name`.
+// Returns the element below VTKFile that is named as its type says, or else `name`.
 Element read_list(const tcv::Reading &reading, const char *name) {
   const char *path = reading.path.c_str();
   const Element root =
@@ -56,14 +56,14 @@ void read_group(const tcv::Reading &reading, vtkXMLDataElement *group, const std
     ++number;
     const char *name = element->GetAttribute("name"), *index = element->GetAttribute("index");
     const std::string own = name && *name ? name : index && *index ? index : std::to_string(number);
-    const bool piece = leaf && is_named(group, "Piece"); // goes by the block's name
+    const bool piece = leaf && is_named(group, "Piece"); // A piece goes by the name of its block.
     const std::string whole = piece ? path : path.empty() ? own : path + "/" + own;
     if (!leaf) {
       read_group(reading, element, whole, depth + 1, contents);
       continue;
     }
     if (!element->GetAttribute("file"))
-      continue; // an empty block
+      continue; // The block is empty.
     tcv::read_part(reading, file_of(reading, element, "file"), whole, contents);
   }
 }
@@ -72,7 +72,8 @@ void read_group(const tcv::Reading &reading, vtkXMLDataElement *group, const std
 
 namespace tcv {
 
-// Programs on Windows write sub\a.vtu, which here may be a file's name and mostly is not.
+// Returns the path of `file`, which the file at `path` names. Programs on Windows write paths such as sub\a.vtu. Here
+// that could be the name of a file, but mostly is not.
 std::string beside(const std::string &path, const std::string &file) {
   const size_t slash = path.rfind('/');
   const std::string folder = slash == std::string::npos ? "" : path.substr(0, slash + 1);

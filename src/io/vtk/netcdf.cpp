@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a NetCDF file in one of the classic formats (CDF-1, 2, 5) is as long as its header says: the NetCDF library
-// reads zeros where a file was cut off, without a word. The format: "NetCDF Classic Format Specification", Unidata.
+// Checks whether a NetCDF file in one of the classic formats (CDF-1, 2 and 5) is as long as its header says. The NetCDF
+// library reads zeros where a file was cut off, without a warning. The formats are described in "NetCDF Classic Format
+// Specification" by Unidata.
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -16,9 +17,9 @@ namespace {
 struct Header {
   std::FILE *file;
   const char *path;
-  int64_t size;     // of the file
-  int version;      // 1, 2 or 5
-  uint64_t records; // length of the one unlimited dimension
+  int64_t size;     // The size of the file.
+  int version;      // This is 1, 2 or 5.
+  uint64_t records; // The length of the one unlimited dimension.
   std::vector<uint64_t> dimensions;
 
   [[noreturn]] void damaged() const {
@@ -35,7 +36,8 @@ struct Header {
     }
     return value;
   }
-  uint64_t count() { // of things that take at least a byte each: more than the file has is nonsense
+  // Each thing that is counted takes at least a byte, so the file can't have more of them than bytes.
+  uint64_t count() {
     const uint64_t value = number(version == 5 ? 8 : 4);
     if (value > static_cast<uint64_t>(size))
       damaged();
@@ -67,11 +69,11 @@ struct Header {
 };
 
 struct Variable {
-  uint64_t begin, bytes; // bytes of it, or of one record of it
+  uint64_t begin, bytes; // How many bytes the variable, or one record of it, has.
   bool record;
 };
 
-// a · b, or the largest number there is.
+// Returns a · b, or the largest number there is if that overflows.
 uint64_t product(uint64_t a, uint64_t b) {
   return b != 0 && a > UINT64_MAX / b ? UINT64_MAX : a * b;
 }
@@ -85,7 +87,7 @@ Variable read_variable(Header &header) {
       header.damaged();
     const uint64_t length = header.dimensions[dimension];
     if (length == 0 && i == 0)
-      variable.record = true; // the unlimited one
+      variable.record = true; // This is the unlimited dimension.
     else
       variable.bytes = product(variable.bytes, length);
   }
@@ -94,7 +96,8 @@ Variable read_variable(Header &header) {
   if (type == 0)
     header.damaged();
   variable.bytes = product(variable.bytes, type);
-  header.number(header.version == 5 ? 8 : 4); // vsize: says less than the dimensions do
+  // This is the size of the variable, which says less than its dimensions do.
+  header.number(header.version == 5 ? 8 : 4);
   variable.begin = header.number(header.version == 1 ? 4 : 8);
   return variable;
 }
@@ -112,11 +115,11 @@ void check_netcdf(const char *path) {
   const uint64_t magic = header.number(4);
   header.version = static_cast<int>(magic & 0xff);
   if (magic >> 8 != 0x434446)
-    return; // HDF5, which looks after itself
+    return; // The file is one of HDF5, which checks its files itself.
   const bool large = header.version == 5;
   header.records = header.number(large ? 8 : 4);
   if (header.records == (large ? UINT64_MAX : UINT32_MAX))
-    header.records = 0; // being written: as many as there are
+    header.records = 0; // The file is being written, and has as many records as there are bytes for.
   header.number(4);
   for (uint64_t i = header.count(); i > 0; --i) {
     header.name();
@@ -134,7 +137,7 @@ void check_netcdf(const char *path) {
     const uint64_t padded = variables.back().bytes / 4 * 4 + (variables.back().bytes % 4 ? 4 : 0);
     record_bytes = padded > UINT64_MAX - record_bytes ? UINT64_MAX : record_bytes + padded;
   }
-  if (record_variables == 1) { // a lone one is not padded
+  if (record_variables == 1) { // If only one variable has records, they are not padded.
     for (const Variable &variable : variables)
       record_bytes = variable.record ? variable.bytes : record_bytes;
   }

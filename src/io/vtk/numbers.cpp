@@ -26,7 +26,8 @@ bool NumberReader::next_word() {
   return !word_.empty();
 }
 
-// "1.5d3", "1.#INF", "-1.#IND": what Fortran, and C on Windows, make of numbers. Changes the word.
+// Changes words such as "1.5d3", "1.#INF" and "-1.#IND", which Fortran and C on Windows write, into what can be read as
+// a number.
 static bool parse_foreign(std::string *word, double *value) {
   const size_t mark = word->find('#'), exponent = word->find_first_of("dD");
   if (mark == std::string::npos) {
@@ -67,7 +68,7 @@ template <typename T> static bool parse(const std::string &word, T *value, bool 
       *value = static_cast<T>(whole);
       return true;
     }
-    double real; // "3.0", "1e3"
+    double real; // Integers may be written as "3.0" or "1e3".
     if (!parse_real(word, &real) || real != std::floor(real) || std::fabs(real) >= 9007199254740992.0)
       return false;
     if (real < static_cast<double>(std::numeric_limits<T>::min()) ||

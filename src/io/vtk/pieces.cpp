@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One grid of several: ghosts are left out, and coincident points of different pieces become one.
+// Makes one grid of several. Ghosts are left out, and points of different pieces that coincide become one.
 #include <algorithm>
 #include <climits>
 #include <cmath>
@@ -31,7 +31,8 @@ namespace {
 
 using tcv::PieceMap;
 
-// The marks of ghosts at points or cells; empty if there are none. Older files say at which level a cell is one.
+// Returns the marks of points or cells that are ghosts, or nothing if there are none. Older files say instead at which
+// level a cell is a ghost.
 std::vector<unsigned char> ghost_marks(vtkDataSetAttributes *attributes, int64_t count) {
   std::vector<unsigned char> marks;
   for (const char *name : {"vtkGhostType", "vtkGhostLevels"}) {
@@ -64,7 +65,7 @@ template <typename Use> void each_cell(vtkUnstructuredGrid *grid, Use &&use) {
   }
 }
 
-// Marks the cells and points that are left out.
+// Marks the cells and points that are to be left out.
 void find_ghosts(vtkUnstructuredGrid *grid, PieceMap *map) {
   const int hidden =
       vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::REFINEDCELL | vtkDataSetAttributes::HIDDENCELL;
@@ -110,7 +111,7 @@ bool has_volume(vtkUnstructuredGrid *grid) {
       continue;
     const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
     if (!cell || cell->GetCellDimension() == 3)
-      return true; // what there is no such cell for is refused later
+      return true; // VTK has no such cell, and it is refused later.
   }
   return false;
 }
@@ -150,7 +151,8 @@ vtkSmartPointer<vtkCellArray> connect(const std::vector<tcv::Piece> &pieces, con
   tcv::fail(TETCAST_ERROR_DATA, "%s: cell %zu: the list of the polyhedron's faces is damaged", place.c_str(), cell);
 }
 
-// The faces of the polyhedra, in VTK's stream: number of faces, then of each its number of points and the points.
+// Appends the faces of the polyhedra in the form of VTK: the number of faces, and then for each face its number of
+// points and the points.
 void add_faces(const tcv::Piece &piece, const PieceMap &map, vtkIdTypeArray *faces, vtkIdTypeArray *starts) {
   vtkIdTypeArray *source = piece.grid->GetFaces(), *at_cell = piece.grid->GetFaceLocations();
   const int64_t end = source ? source->GetNumberOfValues() : 0, points = static_cast<int64_t>(map.to->size());
@@ -246,7 +248,7 @@ namespace tcv {
 Grid unite(const Reading &reading, std::vector<Piece> *pieces, TetcastDatasetPieces *counts,
            std::vector<UnreadArray> *unread) {
   const bool lone = pieces->size() == 1;
-  for (const Piece &piece : *pieces) { // empty ones are nothing but parts of a machine that had no work
+  for (const Piece &piece : *pieces) { // An empty piece only says that a part of a machine had no work.
     if (piece.grid->GetNumberOfCells() > 0)
       check_piece(piece);
   }
@@ -268,7 +270,8 @@ Grid unite(const Reading &reading, std::vector<Piece> *pieces, TetcastDatasetPie
     drop_nonfinite((*pieces)[p].grid, &maps[p]);
     counts->nonfinite_cells += maps[p].nonfinite_cells;
     const bool repeats =
-        p > 0 && (*pieces)[p].grid->GetPoints() == (*pieces)[p - 1].grid->GetPoints(); // Exodus' blocks
+        // Blocks of Exodus share their points.
+        p > 0 && (*pieces)[p].grid->GetPoints() == (*pieces)[p - 1].grid->GetPoints();
     if (!repeats)
       counts->nonfinite_points += maps[p].nonfinite_points;
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formats that programs of their own read (program.cpp): VTK's readers of these crash, hang and print on some damaged
-// files, and the libraries that they bring know nothing of threads. A program is started by posix_spawn(), which copies
-// nothing of this process: no lock that a thread holds, no memory. What becomes of it is told by its pipe alone: the
-// host may ignore SIGCHLD, or wait for every child there is.
+// Reads formats by programs of their own (program.cpp), because VTK's readers of these formats crash, hang and print on
+// some damaged files, and the libraries that they bring are not made for threads. A program is started by
+// posix_spawn(), which copies nothing of this process, neither a lock that a thread holds nor memory. Only its pipe
+// tells what becomes of it, because the host may ignore SIGCHLD, or wait for all of its children.
 #include "plugin.hpp"
 
 #include <algorithm>
@@ -25,8 +25,8 @@ extern char **environ;
 
 namespace tcv {
 
-// Where the programs are: in the folder that $TETCAST_LIBEXEC names, where installing puts them as seen from this
-// library, or beside it in a folder of builds.
+// Returns the folder that has the programs. That is the one that $TETCAST_LIBEXEC names, or where they are installed as
+// seen from this library, or a folder beside the library in a build.
 static std::string program_path(const char *name) {
   const std::string program = std::string("/tetcast-vtk-") + name;
   const char *named = std::getenv("TETCAST_LIBEXEC");
@@ -53,7 +53,7 @@ bool plugin_exists(const char *name) {
 
 static bool is_alive(int process) {
   siginfo_t state = {};
-  // A child that the system, or somebody else in this process, has buried is no child any more.
+  // If the system, or somebody else in this process, has waited for the child, it is no child any more.
   return waitid(P_PID, static_cast<id_t>(process), &state, WEXITED | WNOHANG | WNOWAIT) == 0 && state.si_pid == 0;
 }
 
@@ -74,7 +74,7 @@ public:
     fail(TETCAST_ERROR_UNSUPPORTED, "%s: reading this format needs the program %s, which can't be started: %s",
          request.path.c_str(), program.c_str(), std::strerror(error));
   }
-  ~Program() { // one that goes on has nobody to write to, which ends it
+  ~Program() { // A program that still runs has nobody to write to any more, which ends it.
     close(file_);
     while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR)
       continue;
@@ -91,7 +91,7 @@ private:
          std::strerror(error));
   }
 
-  // With all signals as they are by default, and none held back, whatever the host does with its own.
+  // The program has all signals as they are by default, and none held back, whatever the host does with its own.
   int start(const std::string &program, const std::vector<std::string> &arguments, int channel) {
     std::vector<char *> list = {const_cast<char *>(program.c_str())};
     for (const std::string &one : arguments)
@@ -127,7 +127,7 @@ private:
 
 struct Trial {
   ArrayName array;
-  bool of_array = false; // what was tried last was this one
+  bool of_array = false; // True if the program was trying to read this one array when it was last heard of.
 };
 
 static TetcastAssociation association_of(int64_t value) {
@@ -148,8 +148,8 @@ static void take_block(const Reading &reading, WireReader *wire, WireRecord reco
   contents->surfaces += record == WIRE_FLAT;
 }
 
-// True when all has been told; false when nothing more will be, as `trial` ended the program. Fails on what is wrong
-// with the file.
+// Returns true if all has been told, and false if nothing more will be, because what is in `trial` has ended the
+// program. Fails if the file is damaged.
 static bool listen(const Reading &reading, const char *format, WireReader *wire, Contents *contents, Trial *trial) {
   const char *path = reading.path.c_str();
   try {
@@ -199,8 +199,8 @@ static bool listen(const Reading &reading, const char *format, WireReader *wire,
   }
 }
 
-// Reads by program `name`. Of a program that is ended by what it tries, another goes on: each array on its own first,
-// then without those that are at fault.
+// Reads a file by the program `name`. If an array ends the program, another one is started, which tries each array on
+// its own first and then reads the file without those that are at fault.
 static void read_plugin(const Reading &reading, const char *name, const char *format, Contents *contents) {
   const char *path = reading.path.c_str();
   const std::string program = program_path(name);
@@ -262,7 +262,7 @@ void read_cgns(const Reading &reading, Contents *contents) {
 }
 
 void read_openfoam(const Reading &reading,
-                   Contents *contents) { // VTK would read the folder without looking for the file
+                   Contents *contents) { // VTK would read the folder without looking for the file.
   const char *path = reading.path.c_str();
   if (access(path, R_OK) != 0)
     fail(TETCAST_ERROR_IO, "%s: can't be opened: %s", path, std::strerror(errno));

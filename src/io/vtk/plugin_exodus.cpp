@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exodus II. VTK reads elements with more nodes than it knows of their type as if they had fewer, which shifts all but
-// the first: it is told that they are a list of nodes, and what cell these make is found out here.
+// Reads Exodus II. If an element has more nodes than VTK knows of its type, VTK reads it as if it had fewer, which
+// shifts all elements but the first. So VTK is told here that elements are lists of nodes, and which cells these make
+// is found out afterwards.
 #include <algorithm>
 #include <string>
 
@@ -18,21 +19,22 @@
 
 namespace {
 
-// Where in the list of an element each node of the cell is. Exodus has the edges between bottom and top before those of
-// the top, and of a hexahedron's middles first the one inside, then bottom, top, left, right, front, back; what VTK's
-// pyramid has beyond its base's is not used.
+// These tables say at which place in an element's list each node of the cell is. Exodus has the edges between bottom
+// and top before those of the top. Of a hexahedron's middles, the one inside comes first, and then those of bottom,
+// top, left, right, front and back. Nodes of a pyramid that VTK has beyond the middle of its base are not used.
 const signed char in_order[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
 const signed char hexahedron[] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 16, 17,
                                   18, 19, 12, 13, 14, 15, 23, 24, 25, 26, 21, 22, 20};
 const signed char wedge[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15, 16, 17};
 const signed char pyramid[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 0, 0, 0, 0, 0};
 
-// The first three letters of an element's type say what it is, its number of nodes which: at least so many in this
-// table, and exactly so many where edges are to have nodes. In other numbers the corners come first, too.
+// The first three letters of an element's type say what it is, and its number of nodes says which. An element has at
+// least as many nodes as its row says, and exactly as many if its edges have nodes. Corners come first whatever the
+// number is.
 const struct Kind {
   const char *letters;
-  int listed, used; // nodes of the element, and of those in use
-  int type, size;   // VTK's, and how many nodes that has
+  int listed, used; // How many nodes the element lists, and how many of them are used.
+  int type, size;   // The type for VTK, and how many nodes that has.
   const signed char *order;
 } kinds[] = {
     {"TET", 10, 10, VTK_QUADRATIC_TETRA, 10, in_order},
@@ -58,11 +60,11 @@ const struct Kind {
     {"HEX", 0, 8, VTK_HEXAHEDRON, 8, in_order},
 };
 
-constexpr int MARK = 128; // types from here on stand for places in the table; no cell of VTK's has such a number
+constexpr int MARK = 128; // Types from here on are rows of the table. No cell of VTK has such a number.
 static_assert(static_cast<int>(VTK_NUMBER_OF_CELL_TYPES) <= MARK && MARK + std::size(kinds) <= 256,
               "types and places must not meet");
 
-// The place of a block's kind; −1: no volume, or polyhedra, which VTK reads as they are.
+// Returns the row of a block's kind, or −1 if it is no volume, or if it has polyhedra, which VTK reads as they are.
 int find_kind(const std::string &letters, int nodes) {
   for (size_t i = 0; i < std::size(kinds); ++i) {
     if (letters == kinds[i].letters && (kinds[i].listed == nodes || (kinds[i].listed == 0 && nodes >= kinds[i].used)))
@@ -77,10 +79,10 @@ class Reader : public vtkExodusIIReader {
 public:
   static Reader *New() { VTK_STANDARD_NEW_BODY(Reader); }
 
-  // Has VTK take all nodes of the elements, whatever they make. Returns what is to be said of those that will not be
+  // Makes VTK take all nodes of the elements, whatever cells they make. Returns a message about those that will not be
   // used.
   std::vector<std::string> take_all_nodes() {
-    struct Blocks : Metadata { // which only descendants see
+    struct Blocks : Metadata { // Only classes that are derived from it see it.
       static std::map<int, std::vector<BlockInfoType>> Metadata::*all() { return &Blocks::BlockInfo; }
     };
     std::vector<std::string> remarks, told;
@@ -89,7 +91,7 @@ public:
       std::transform(type.begin(), type.end(), type.begin(),
                      [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
       const int nodes = block.BdsPerEntry[0], kind = find_kind(type.substr(0, 3), nodes);
-      if (block.Size > 0 && nodes < block.PointsPerCell) { // VTK would read beyond the list
+      if (block.Size > 0 && nodes < block.PointsPerCell) { // VTK would read beyond the list.
         vtkErrorMacro("block " << block.Id << ": its " << nodes << " nodes don't make an element of type " << type);
         block.Status = 0;
       }
@@ -108,7 +110,7 @@ public:
   }
 };
 
-// The block with the cells that its lists of nodes make.
+// Returns the block with the cells that its lists of nodes make.
 void make_cells(vtkUnstructuredGrid *block) {
   vtkUnsignedCharArray *types = block->GetCellTypesArray();
   const vtkIdType cells = block->GetNumberOfCells();
@@ -145,7 +147,7 @@ public:
     reader_->SetFileName(path.c_str());
     reader_->UpdateInformation();
     remarks = reader_->take_all_nodes();
-    reader_->SetSqueezePoints(false); // every block has all points of the file
+    reader_->SetSqueezePoints(false); // Then every block has all points of the file.
     reader_->GenerateObjectIdCellArrayOff();
     reader_->GenerateGlobalElementIdArrayOff();
     reader_->GenerateGlobalNodeIdArrayOff();
@@ -198,7 +200,7 @@ vtkSmartPointer<vtkDataObject> Exodus::read(int64_t step) {
     first = first ? first : block;
     if (block == first || block->GetNumberOfPoints() != first->GetNumberOfPoints())
       continue;
-    block->SetPoints(first->GetPoints()); // which tells that they are the same
+    block->SetPoints(first->GetPoints()); // That shows that they are the same points.
     block->GetPointData()->ShallowCopy(first->GetPointData());
   }
   return blocks;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// VTKHDF: images, and unstructured grids in parts, with time steps or without. By the HDF5 library, as VTK's reader
-// of 9.1 knows of no steps, and refuses a file for the type of one array. The format: docs.vtk.org, "VTKHDF format
-// specification".
+// Reads VTKHDF: images, and unstructured grids in parts, with time steps or without. It uses the HDF5 library, because
+// the reader of VTK 9.1 knows of no steps, and refuses a file if it does not know the type of one array. The format is
+// described at docs.vtk.org, "VTKHDF format specification".
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -24,7 +24,7 @@
 
 namespace {
 
-// An object of HDF5's, closed at the end.
+// An object of HDF5 that is closed in the end.
 class Handle {
 public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -57,8 +57,8 @@ bool has_link(hid_t where, const std::string &name) {
   return H5Lexists(where, name.c_str(), H5P_DEFAULT) > 0;
 }
 
-// The type in memory for values of the file's type; VTK_VOID: there is none. Half precision becomes single, truth 0
-// and 1.
+// Returns the type in memory for values of the type in the file, or VTK_VOID if there is none. Half precision becomes
+// single precision, and false and true become 0 and 1.
 struct Memory {
   int vtk;
   hid_t type;
@@ -96,25 +96,25 @@ Memory memory_of(hid_t file_type) {
   }
 }
 
-// Why an array, or what is needed, can't be read.
+// Why an array, or something that is needed, can't be read.
 struct Unreadable {
   std::string reason;
 };
 
-// Whether there is that much data behind what a dataset claims: filters make a value of a byte in a thousand, and no
+// Returns whether the file has as much data as a dataset claims. A filter can make a thousand values of a byte, but no
 // more.
 bool is_stored(hid_t dataset, uint64_t bytes) {
   const Handle settings(H5Dget_create_plist(dataset), H5Pclose);
   const H5D_layout_t layout = settings.is_there() ? H5Pget_layout(settings) : H5D_LAYOUT_ERROR;
   if (layout != H5D_CHUNKED && layout != H5D_CONTIGUOUS)
-    return layout != H5D_LAYOUT_ERROR; // compact, or of other files
+    return layout != H5D_LAYOUT_ERROR; // The data are compact, or in other files.
   if (layout == H5D_CONTIGUOUS && H5Pget_external_count(settings) > 0)
     return true;
   return bytes / 4096 <= H5Dget_storage_size(dataset) || bytes <= 65536;
 }
 
-// Tuples [start, start + count) of a dataset whose first `lead` dimensions are theirs, x last; what is behind those are
-// components.
+// Reads the tuples [start, start + count) of a dataset. As many of its first dimensions as `start` has are those of the
+// tuples, x last; the others are components.
 vtkSmartPointer<vtkDataArray> read_tuples(hid_t where, const std::string &name, const Sizes &start,
                                           const Sizes &count) {
   const Handle dataset(has_link(where, name) ? H5Dopen2(where, name.c_str(), H5P_DEFAULT) : -1, H5Dclose);
@@ -172,7 +172,7 @@ private:
   [[noreturn]] void damaged(const std::string &what, const std::string &why) const {
     tcv::fail(TETCAST_ERROR_DATA, "%s: truncated or damaged: %s: %s", path_.c_str(), what.c_str(), why.c_str());
   }
-  // What has to be there.
+  // Reads what has to be there, and fails if that is not possible.
   vtkSmartPointer<vtkDataArray> needed(const std::string &name, hsize_t start, hsize_t count) const {
     try {
       return read_tuples(root(), name, {start}, {count});
@@ -298,7 +298,7 @@ std::vector<int64_t> Hdf::integers(const std::string &name, hsize_t start, hsize
   return result;
 }
 
-// Of one step, of a list that may be missing.
+// Reads the number of one step from a list that may be missing.
 int64_t Hdf::step_integer(const std::string &name, int64_t step, int64_t otherwise) const {
   const std::string path = "Steps/" + name;
   for (size_t slash = path.find('/'); slash != std::string::npos; slash = path.find('/', slash + 1)) {
@@ -322,7 +322,7 @@ std::array<double, N> Hdf::attribute(const char *name, const std::array<double, 
 
 // ── datasets ──
 
-// `place` says where an array's tuples begin and how many there are.
+// Adds the arrays. `place` says where the tuples of an array begin, and how many there are.
 void Hdf::add_arrays(vtkDataSet *dataset, int64_t step,
                      const std::function<void(TetcastAssociation, Sizes *, Sizes *)> &place) {
   for (const tcv::ArrayName &array : wanted_) {
@@ -331,7 +331,7 @@ void Hdf::add_arrays(vtkDataSet *dataset, int64_t step,
     Sizes start, count;
     place(array.association, &start, &count);
     try {
-      if (has_steps()) { // where its values of this step begin, or of which step they are
+      if (has_steps()) { // The file says where the values of this step begin, or of which step they are.
         const int64_t shift =
             step_integer((of_points ? "PointDataOffsets/" : "CellDataOffsets/") + array.name, step, -1);
         if (shift >= 0)
@@ -348,7 +348,7 @@ void Hdf::add_arrays(vtkDataSet *dataset, int64_t step,
         if (!has_steps() || type_ != "ImageData")
           throw;
         values = read_tuples(root(), name, {start.begin() + 1, start.end()},
-                             {count.begin() + 1, count.end()}); // is of all steps
+                             {count.begin() + 1, count.end()}); // The values are the same for all steps.
       }
       (of_points ? static_cast<vtkDataSetAttributes *>(dataset->GetPointData()) : dataset->GetCellData())
           ->AddArray(values);
@@ -380,7 +380,7 @@ vtkSmartPointer<vtkDataObject> Hdf::read_image(int64_t step) {
   image->SetSpacing(spacing[0], spacing[1], spacing[2]);
   image->SetDirectionMatrix(direction.data());
   add_arrays(image, step, [&](TetcastAssociation association, Sizes *start, Sizes *count) {
-    if (has_steps()) { // the first dimension is time
+    if (has_steps()) { // The first dimension is time.
       start->push_back(0);
       count->push_back(1);
     }
@@ -393,9 +393,9 @@ vtkSmartPointer<vtkDataObject> Hdf::read_image(int64_t step) {
   return image;
 }
 
-// The list of offsets begins anew in each part, one longer than its cells: where a part's begins depends on how many
-// parts there are before, which writers of meshes that stay the same for several steps count differently. The right one
-// of `starts` fits.
+// Reads the cells. The list of offsets begins anew in each part, and has one number more than the part has cells. Where
+// the list of a part begins so depends on the number of parts before it, which programs count differently if the mesh
+// stays the same for several steps. Of the candidates in `starts`, the one whose numbers fit is right.
 vtkSmartPointer<vtkCellArray> Hdf::read_cells(hsize_t cells, hsize_t ids, hsize_t connectivity,
                                               const std::vector<hsize_t> &starts) const {
   auto list = vtkSmartPointer<vtkCellArray>::New();
@@ -439,7 +439,7 @@ vtkSmartPointer<vtkDataObject> Hdf::read_grid(int64_t step) {
   const auto points = integers("NumberOfPoints", part, parts), cells = integers("NumberOfCells", part, parts);
   const auto ids = integers("NumberOfConnectivityIds", part, parts);
   const auto before = integers("NumberOfCells", 0, sizes[0]);
-  hsize_t parts_before = 0, sum = 0; // those whose cells come first
+  hsize_t parts_before = 0, sum = 0; // How many parts come before this step's, and how many cells these have.
   while (sum < cell && parts_before < before.size())
     sum += static_cast<hsize_t>(before[parts_before++]);
   vtkNew<vtkMultiPieceDataSet> pieces;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenFOAM cases: the path is that of an empty file in the case's folder, as ParaView has it.
+// Reads OpenFOAM cases. The path is that of an empty file in the folder of the case, as in ParaView.
 #include <vtkOpenFOAMReader.h>
 
 #include "source.hpp"
@@ -10,7 +10,7 @@ class OpenFoam : public tcv::VtkSource<vtkOpenFOAMReader> {
 public:
   bool open(const std::string &path) override {
     reader_->SetFileName(path.c_str());
-    reader_->SetCreateCellToPoint(false); // fields are as the file has them
+    reader_->SetCreateCellToPoint(false); // Fields stay as the file has them.
     reader_->SetDecomposePolyhedra(false);
     return true;
   }

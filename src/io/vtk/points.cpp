@@ -26,7 +26,7 @@ bool operator==(const Position &a, const Position &b) {
 uint64_t hash_of(const Position &position, uint64_t salt) {
   uint64_t hash = salt * 0x9E3779B97F4A7C15u;
   for (const double x : position.x) {
-    const double value = x == 0 ? 0 : x; // -0 is 0
+    const double value = x == 0 ? 0 : x; // −0 becomes 0, so that both have the same hash.
     uint64_t bits;
     std::memcpy(&bits, &value, sizeof bits);
     hash = (hash ^ bits) * 0xFF51AFD7ED558CCDu;
@@ -35,7 +35,7 @@ uint64_t hash_of(const Position &position, uint64_t salt) {
   return hash;
 }
 
-// An open hash table of points' numbers.
+// A hash table with open addressing, of the numbers of points.
 class Table {
 public:
   explicit Table(int64_t points) {
@@ -44,7 +44,7 @@ public:
       size *= 2;
     slots_.assign(size, -1);
   }
-  // The first point at this hash that `fits`, or -1.
+  // Returns the first point with this hash that `fits`, or -1.
   template <typename Fits> int64_t find(uint64_t hash, Fits &&fits) const {
     for (size_t at = hash & (slots_.size() - 1); slots_[at] >= 0; at = (at + 1) & (slots_.size() - 1)) {
       if (fits(slots_[at]))
@@ -63,7 +63,7 @@ private:
   std::vector<int32_t> slots_;
 };
 
-// The distinct points so far.
+// The distinct points that were found so far.
 template <typename T> class Points {
 public:
   Points(T *values, int64_t limit) : values_(values), table_(limit) {}
@@ -87,8 +87,9 @@ private:
   int64_t count_ = 0;
 };
 
-// Coincident points of different pieces become one; those of the same piece stay apart: the second of a piece at a
-// place goes with the second of another, as where both see a crack.
+// Points of different pieces that coincide become one, but points of the same piece stay apart, because at a crack a
+// piece has several points at one place. There, the second point of a piece becomes one with the second point of
+// another.
 template <typename T> class ExactMerger {
 public:
   ExactMerger(T *values, int64_t limit) : points_(values, limit) { visits_.reserve(static_cast<size_t>(limit)); }
@@ -110,8 +111,8 @@ public:
 
 private:
   struct Visit {
-    int32_t piece, times; // how often the piece came to this place; kept with the first point there
-    int32_t which;        // of the points at this place
+    int32_t piece, times; // How often the piece has come to this place, which is kept with the first point there.
+    int32_t which;        // Which of the points at this place it is.
   };
 
   int64_t find(const Position &position, int32_t which) const {
@@ -128,7 +129,8 @@ private:
   std::vector<Visit> visits_;
 };
 
-// Points no further apart than a tolerance become the first of them; 0: those that coincide.
+// Points that are no further apart than a tolerance become one, which is the first of them. If the tolerance is 0, they
+// have to coincide.
 template <typename T> class NearMerger {
 public:
   NearMerger(T *values, int64_t limit, double tolerance) : points_(values, limit), tolerance_(tolerance) {}
@@ -149,7 +151,7 @@ public:
   int64_t count() const { return points_.count(); }
 
 private:
-  Position box_of(const Position &position) const { // of the edge length of the tolerance
+  Position box_of(const Position &position) const { // The edges of a box are as long as the tolerance.
     if (tolerance_ == 0)
       return position;
     Position box;
@@ -207,7 +209,7 @@ vtkSmartPointer<vtkPoints> merge_as(const std::vector<tcv::Piece> &pieces, int64
   values->SetNumberOfTuples(limit);
   const auto merge = [&](auto &&merger) {
     map_points(pieces, &merger, maps, merged);
-    values->Resize(merger.count()); // gives back what merging saved
+    values->Resize(merger.count()); // This gives back the memory that merging has saved.
     values->SetNumberOfTuples(merger.count());
   };
   if (tolerance < 0)
@@ -237,7 +239,7 @@ void drop_nonfinite(vtkUnstructuredGrid *grid, PieceMap *map) {
     if (map->dropped_points.empty())
       map->dropped_points.assign(static_cast<size_t>(count), 0);
     if (map->dropped_points[static_cast<size_t>(i)])
-      continue; // with ghosts
+      continue; // It has been left out together with the ghosts.
     if (bad.empty())
       bad.assign(static_cast<size_t>(count), 0);
     bad[static_cast<size_t>(i)] = map->dropped_points[static_cast<size_t>(i)] = 1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program tetcast-vtk-NAME: reads one file for the library, which started it, and tells it by descriptor 3 what is
-// in there (wire.hpp). What VTK's readers do to this process on damaged files ends nothing else.
+// This is the program tetcast-vtk-NAME. The library starts it to read one file, and it writes what is in the file to
+// descriptor 3 (wire.hpp). Whatever the readers of VTK do to this process on damaged files, the process of the library
+// goes on.
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
@@ -41,9 +42,9 @@ double seconds_of_cpu() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-// How many bytes this process has read; -1 where the system does not say.
+// Returns how many bytes this process has read, or -1 if the system does not say.
 double bytes_read() {
-  char text[32] = ""; // "rchar: " comes first
+  char text[32] = ""; // The text "rchar: " comes first.
   const int file = open("/proc/self/io", O_RDONLY | O_CLOEXEC);
   if (file < 0)
     return -1;
@@ -54,10 +55,10 @@ double bytes_read() {
 
 struct Spent {
   double seconds, bytes;
-} begun; // what there was when the attempt began
+} begun; // This is what was used when the attempt began.
 
-// VTK's readers look for words that a damaged file does not have, without end: they compute and read nothing any more.
-// What a whole file takes is far less than this. Called by the timer.
+// Ends a reader of VTK that looks without end for words which a damaged file does not have. Such a reader computes and
+// reads nothing any more, and a whole file takes far less time than is allowed here. The timer calls this function.
 void stop_if_endless(int) {
   const double bytes = bytes_read() - begun.bytes;
   if (begun.bytes < 0 || seconds_of_cpu() - begun.seconds <= 3 + 4e-6 * bytes)
@@ -73,7 +74,7 @@ void watch(bool on) {
   setitimer(ITIMER_REAL, &interval, nullptr);
 }
 
-// No more than the machine has: a size that a damaged file claims is then refused.
+// Allows no more memory than the machine has, so that a size which a damaged file claims is refused.
 void limit_memory() {
 #ifndef __SANITIZE_ADDRESS__
   rlimit limit;
@@ -88,17 +89,17 @@ void limit_memory() {
 
 // ── reading ──
 
-int printed[2]; // a pipe, for what is printed: what makes a reader do so is damaged
+int printed[2]; // A pipe that takes what readers print. A file that makes them print is damaged.
 
 struct Attempt {
   vtkSmartPointer<vtkDataObject> object;
-  bool good = false, foreign = false; // foreign: not of the format
+  bool good = false, foreign = false; // `foreign`: the file is not of the format.
   std::string error;
   std::vector<std::string> warnings;
   std::vector<tcv::UnreadArray> unreadable;
 };
 
-// Anew each time: a reader that has failed once may be in any state.
+// Makes a new reader each time, because one that has failed once may be in any state.
 std::unique_ptr<tcv::Source> open_source(const tcv::PluginRequest &request, Attempt *attempt) {
   tcv::SourceOptions options;
   options.displace = request.displace;
@@ -107,7 +108,7 @@ std::unique_ptr<tcv::Source> open_source(const tcv::PluginRequest &request, Atte
   return source;
 }
 
-// Reads the arrays and no others.
+// Reads these arrays, and no others.
 Attempt try_reading(const tcv::PluginRequest &request, const std::vector<tcv::ArrayName> &arrays) {
   Attempt attempt;
   watch(true);
@@ -151,7 +152,8 @@ Attempt try_reading(const tcv::PluginRequest &request, const std::vector<tcv::Ar
 
 // ── telling ──
 
-// Children of a group that have no name go by their number, pieces of a block by the block's name.
+// Tells of the parts of a group. Children that have no name go by their number, and pieces of a block go by the name of
+// the block.
 void each_leaf(const std::string &path, vtkDataObject *object,
                const std::function<void(const std::string &, vtkDataSet *)> &use) {
   if (auto *pieces = vtkMultiPieceDataSet::SafeDownCast(object)) {
@@ -204,7 +206,7 @@ void tell_lost(const tcv::UnreadArray &one, tcv::WireWriter *wire) {
   wire->text(one.reason);
 }
 
-// Tells beforehand what is tried: should it end this program, the library knows what it was.
+// Tells the library what is tried before trying it, so that it knows the cause if this ends the program.
 Attempt announced(const tcv::PluginRequest &request, const std::vector<tcv::ArrayName> &arrays, tcv::WireWriter *wire) {
   wire->record(tcv::WIRE_TRY);
   wire->text(arrays.size() == 1 ? arrays[0].name : "");
@@ -213,8 +215,8 @@ Attempt announced(const tcv::PluginRequest &request, const std::vector<tcv::Arra
   return try_reading(request, arrays);
 }
 
-// Moves to `bad` those of the arrays [begin, end) that can't be read, of which there is one at least. Halves tell
-// soonest.
+// Moves those of the arrays [begin, end) that can't be read to `bad`. At least one of them can't. Trying halves finds
+// them with the fewest attempts.
 void find_bad(const tcv::PluginRequest &request, const std::vector<tcv::ArrayName> &arrays, tcv::WireWriter *wire,
               const std::string &error, std::vector<tcv::UnreadArray> *bad) {
   if (arrays.size() == 1)
@@ -228,7 +230,7 @@ void find_bad(const tcv::PluginRequest &request, const std::vector<tcv::ArrayNam
   }
 }
 
-// Sorts the file's arrays: those to be read, and those that were not asked for, of which the library is told.
+// Sorts the arrays of the file into those to be read, and those that were not asked for, of which the library is told.
 std::vector<tcv::ArrayName> choose_arrays(const tcv::PluginRequest &request, const std::vector<tcv::ArrayName> &all,
                                           tcv::WireWriter *wire) {
   std::vector<tcv::ArrayName> wanted;
@@ -249,7 +251,8 @@ std::vector<tcv::ArrayName> choose_arrays(const tcv::PluginRequest &request, con
   return wanted;
 }
 
-// The file as it is without the arrays that can't be read. Each is read on its own if there were crashes before.
+// Reads the file without the arrays that can't be read. If there were crashes before, each array is tried on its own
+// first.
 Attempt read_what_can_be(const tcv::PluginRequest &request, std::vector<tcv::ArrayName> arrays, tcv::WireWriter *wire) {
   Attempt attempt;
   if (!request.apart) {
@@ -320,7 +323,7 @@ void run(const tcv::PluginRequest &request, tcv::WireWriter *wire) {
   wire->record(tcv::WIRE_END);
 }
 
-// Descriptors but the channel are the host's and none of this program's business; a pipe takes what is printed.
+// Closes all descriptors but the channel, because the others belong to the host. A pipe takes what is printed.
 bool arrange_files() {
   close_range(channel + 1, ~0U, 0);
   const int nothing = open("/dev/null", O_RDONLY);
@@ -341,7 +344,7 @@ int main(int argc, char **argv) {
   if (!arrange_files())
     return 1;
   limit_memory();
-  vtkSMPTools::SetBackend("Sequential"); // no threads beside those of the host
+  vtkSMPTools::SetBackend("Sequential"); // The host decides about threads, so there are no others here.
   tcv::WireWriter wire(channel);
   tcv::PluginRequest request;
   try {
@@ -355,5 +358,5 @@ int main(int argc, char **argv) {
     tell_failure(TETCAST_ERROR_DATA, request.path + ": truncated or damaged: " + exception.what(), &wire);
   }
   wire.flush();
-  _exit(0); // without what VTK does at its end
+  _exit(0); // This leaves out what VTK does at its end.
 }

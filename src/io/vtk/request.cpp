@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is asked for, as the library and its reader programs both understand it.
+// What is asked for, in a form that the library and its reader programs both understand.
 #include "plugin.hpp"
 
 #include <cstdio>
@@ -10,7 +10,7 @@
 
 namespace tcv {
 
-// Each a letter, and what it says.
+// Each option is a letter, followed by what it says.
 std::vector<std::string> arguments_of(const PluginRequest &request) {
   char time[64];
   std::snprintf(time, sizeof time, "t%a", request.time);
@@ -92,7 +92,8 @@ int64_t choose_step(const std::string &path, int64_t step, double time, const st
       if (std::fabs(times[static_cast<size_t>(i)] - time) < std::fabs(times[static_cast<size_t>(nearest)] - time))
         nearest = i;
     }
-    // Decimal fractions are not exact, and some formats keep times in single precision.
+    // Times are compared with a tolerance, as decimal fractions are not exact, and some formats keep times in single
+    // precision.
     const double found = times[static_cast<size_t>(nearest)];
     const double scale = std::fmax(std::fabs(found), times.back() - times.front());
     if (!(std::fabs(found - time) <= 1e-6 * scale)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// ParaView's .series files, JSON: {"file-series-version": "1.0", "files": [{"name": "a.vtu", "time": 0.5}, …]}. What
-// else they hold is passed over.
+// Reads ParaView's .series files, which are JSON: {"file-series-version": "1.0", "files": [{"name": "a.vtu", "time":
+// 0.5}, …]}. Whatever else they hold is passed over.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -38,7 +38,7 @@ public:
       damaged();
   }
 
-  // Calls `use(key)` for each member; it takes the value.
+  // Calls `use(key)` for each member of an object, which takes the value.
   template <typename Use> void object(Use &&use) {
     expect('{');
     if (take('}'))
@@ -107,7 +107,7 @@ public:
   }
 
 private:
-  void escape(std::string *result) { // at the letter behind the backslash
+  void escape(std::string *result) { // It is called at the letter behind the backslash.
     static const char letters[] = "\"\\/bfnrt", meanings[] = "\"\\/\b\f\n\r\t";
     const char letter = text_[at_];
     const char *found = letter ? std::strchr(letters, letter) : nullptr;
@@ -125,7 +125,7 @@ private:
       code = code * 16 + static_cast<unsigned>(std::strtoul(digit, nullptr, 16));
     }
     if (code == 0 || (code >= 0xD800 && code < 0xE000))
-      damaged(); // no names of files
+      damaged(); // Names of files have no such characters.
     if (code < 0x80)
       *result += static_cast<char>(code);
     else if (code < 0x800)
@@ -149,7 +149,8 @@ void read_series(const Reading &reading, Contents *contents) {
   Json json(reading.path.c_str(), text);
   std::vector<Step> steps;
   const auto file = [&] {
-    Step step = {static_cast<double>(steps.size()), ""}; // times by number where there are none
+    // If there are no times, the numbers of the steps stand for them.
+    Step step = {static_cast<double>(steps.size()), ""};
     json.object([&](const std::string &key) {
       if (key == "name")
         step.path = json.string();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Structured grids as hexahedra.
+// Turns structured grids into hexahedra.
 #include <climits>
 
 #include <vtkCellArray.h>
@@ -21,7 +21,7 @@
 
 namespace {
 
-// Number of points along each axis; false for other kinds of dataset.
+// Finds the number of points along each axis. Returns false for other kinds of dataset.
 bool dimensions_of(vtkDataSet *dataset, int dimensions[3]) {
   if (auto *image = vtkImageData::SafeDownCast(dataset))
     image->GetDimensions(dimensions);
@@ -47,7 +47,7 @@ vtkSmartPointer<vtkPoints> points_of(vtkDataSet *dataset, int64_t count) {
   return points;
 }
 
-// In the order of VTK's hexahedron, cell by cell along x, then y, then z.
+// Lists the corners in the order of VTK's hexahedron. Cells go along x first, then y, then z.
 template <typename Indices> void connect(const int64_t points[3], int64_t cells, Indices *indices, Indices *ends) {
   using T = typename Indices::ValueType;
   indices->SetNumberOfValues(8 * cells);
@@ -81,7 +81,7 @@ Grid to_hexahedra(const std::string &place, vtkDataSet *dataset) {
   for (int k = 0; k < 3; ++k) {
     points[k] = dimensions[k];
     if (points[k] < 2)
-      return nullptr; // a surface, a line or a point
+      return nullptr; // It is a surface, a line or a point.
     count *= points[k];
     cells *= points[k] - 1;
     if (count >= INT32_MAX) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading files of surfaces.
+// Reads files of surfaces.
 #include "surface.hpp"
 #include "common.hpp"
 #include "files.hpp"
@@ -47,7 +47,7 @@ template <vtkSmartPointer<vtkPolyData> (*read)(const char *)> static Polygons re
   for (int64_t i = 0; i < data->GetStrips()->GetNumberOfCells(); ++i) {
     data->GetStrips()->GetCellAtId(i, cell);
     for (int64_t j = 0; j + 2 < cell->GetNumberOfIds(); ++j) {
-      const bool odd = j % 2 != 0; // every other triangle is turned over
+      const bool odd = j % 2 != 0; // Every other triangle of a strip is turned over.
       result.corners.insert(result.corners.end(), {cell->GetId(j + odd), cell->GetId(j + !odd), cell->GetId(j + 2)});
       result.end_polygon();
     }
@@ -55,7 +55,8 @@ template <vtkSmartPointer<vtkPolyData> (*read)(const char *)> static Polygons re
   return result;
 }
 
-// A format is one row. Content tells (file_kind); the extension only where content is silent.
+// A row for each format. The content of a file tells its format (file_kind), and the extension does only if the content
+// does not.
 static const struct {
   const char *kind;
   const char *extension;
@@ -140,12 +141,12 @@ public:
   std::vector<int64_t> triangles;
 
 private:
-  // Numbers the points in the order polygons use them; unused ones are left out.
+  // Numbers the points in the order in which polygons use them. Points that no polygon uses are left out.
   int64_t merge(size_t i) {
     if (merged_[i] >= 0)
       return merged_[i];
     const double *p = &polygons_.points[3 * i];
-    const Point point = {p[0] + 0.0, p[1] + 0.0, p[2] + 0.0}; // −0 is 0
+    const Point point = {p[0] + 0.0, p[1] + 0.0, p[2] + 0.0}; // −0 becomes 0.
     const auto [entry, is_new] = numbers_.emplace(point, static_cast<int64_t>(points.size() / 3));
     if (is_new)
       points.insert(points.end(), point.begin(), point.end());
@@ -174,14 +175,14 @@ private:
       if (good) {
         triangle(static_cast<size_t>(cuts_->GetId(3 * i)), static_cast<size_t>(cuts_->GetId(3 * i + 1)),
                  static_cast<size_t>(cuts_->GetId(3 * i + 2)));
-      } else { // a flat one: any way of cutting keeps the surface closed
+      } else { // The polygon is degenerate. However it is cut, the surface stays closed.
         triangle(0, static_cast<size_t>(i) + 1, static_cast<size_t>(i) + 2);
       }
     }
   }
 
   const Polygons &polygons_;
-  std::vector<int64_t> merged_; // −1: not yet used
+  std::vector<int64_t> merged_; // The number of each point, or −1 if it has not been used so far.
   std::unordered_map<Point, int64_t, PointHash> numbers_;
   std::vector<int64_t> corners_;
   vtkNew<vtkPolygon> polygon_;
@@ -202,7 +203,7 @@ template <typename T> static T *copied(const std::vector<T> &values) {
 static void read_surface(const char *path, TetcastSurface *surface) {
   const Polygons polygons = read_polygons(path);
   check(path, polygons);
-  const Capture capture; // VTK complains about polygons that it can't cut
+  const Capture capture; // VTK complains about polygons that it can't cut.
   Builder builder(polygons);
   for (size_t i = 0, begin = 0; i < polygons.ends.size(); begin = polygons.ends[i++])
     builder.add(begin, polygons.ends[i]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY. (VTK 9.1's own reader crashes on a header that it doesn't know.)
+// Reads PLY. (The reader of VTK 9.1 crashes on a header that it does not know.)
 #include "common.hpp"
 #include "surface.hpp"
 
@@ -13,10 +13,10 @@ enum Encoding { TEXT, LITTLE, BIG };
 
 struct Property {
   std::string name;
-  char type;           // 'i' signed, 'u' unsigned, 'f' floating
-  int size;            // bytes
-  char count_type = 0; // of a list
-  int count_size = 0;  // 0: no list
+  char type;           // This is i for signed, u for unsigned and f for floating.
+  int size;            // The number of bytes.
+  char count_type = 0; // The type of the number in front of a list.
+  int count_size = 0;  // The size of that number; 0: it is no list.
 };
 
 struct Element {
@@ -44,7 +44,7 @@ bool parse_type(const std::string &name, char *type, int *size) {
   return false;
 }
 
-// The header's lines up to end_header; `body` receives where the data begin.
+// Reads the lines of the header up to end_header. `body` receives where the data begin.
 std::vector<Element> parse_header(const char *path, const std::string &bytes, Encoding *encoding, size_t *body) {
   size_t end = bytes.find("\nend_header");
   const size_t newline = end == std::string::npos ? end : bytes.find('\n', end + 1);
@@ -93,7 +93,7 @@ std::vector<Element> parse_header(const char *path, const std::string &bytes, En
   return elements;
 }
 
-// Values one after the other, whatever the encoding.
+// Reads values one after the other, whatever the encoding is.
 class Values {
 public:
   Values(const char *path, const std::string &bytes, size_t body, Encoding encoding)
@@ -138,7 +138,7 @@ private:
   const char *at_, *end_;
 };
 
-// A number that counts or indexes. Out of range it becomes −1, which later checks refuse.
+// Reads a number that counts or indexes. If it is out of range, it becomes −1, which later checks refuse.
 int64_t whole(double value) {
   return value >= 0 && value <= 1e15 && value == std::floor(value) ? static_cast<int64_t>(value) : -1;
 }
@@ -156,7 +156,7 @@ Polygons read_ply(const char *path) {
   Polygons result;
   for (const Element &element : elements) {
     if (element.properties.empty())
-      continue; // nothing is stored, whatever the count
+      continue; // Nothing is stored, whatever the count says.
     const bool vertices = element.name == "vertex", faces = element.name == "face";
     if (element.name == "tristrips")
       fail(TETCAST_ERROR_UNSUPPORTED, "%s: triangle strips in PLY can't be read", path);

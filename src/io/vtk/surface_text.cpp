@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// STL, OFF and OBJ. VTK has no reader of OFF, and its others would bring in a rendering library each start has to load.
+// Reads STL, OFF and OBJ. VTK has no reader of OFF, and its readers of the others need a rendering library that would
+// have to be loaded at each start.
 #include "common.hpp"
 #include "surface.hpp"
 
@@ -92,7 +93,7 @@ static Polygons read_stl_text(const char *path, const std::string &text) {
 static Polygons read_stl_binary(const char *path, const std::string &bytes, uint32_t claimed) {
   const size_t header = 84, facet = 50;
   const size_t whole = bytes.size() < header ? 0 : (bytes.size() - header) / facet;
-  // Writers that stream leave 0 or all ones in place of the count.
+  // Programs that write while they compute leave 0, or all ones, in place of the count.
   const size_t count = claimed == 0 || claimed == UINT32_MAX ? whole : claimed;
   if (bytes.size() < header || count > whole) {
     fail(TETCAST_ERROR_DATA, "%s: truncated: holds %zu of %zu triangles", path, whole, count);
@@ -101,7 +102,7 @@ static Polygons read_stl_binary(const char *path, const std::string &bytes, uint
   result.points.reserve(9 * count);
   for (size_t i = 0; i < count; ++i) {
     float corners[9];
-    std::memcpy(corners, &bytes[header + facet * i + 12], sizeof corners); // after the normal
+    std::memcpy(corners, &bytes[header + facet * i + 12], sizeof corners); // The corners follow the normal.
     for (float value : corners)
       result.points.push_back(static_cast<double>(value));
     for (size_t j = 0; j < 3; ++j)
@@ -117,7 +118,7 @@ Polygons read_stl(const char *path) {
   if (bytes.size() >= 84)
     std::memcpy(&claimed, &bytes[80], sizeof claimed);
   const bool binary_size = bytes.size() >= 84 && bytes.size() == 84 + 50 * static_cast<size_t>(claimed);
-  // Binary files may begin with "solid" as well.
+  // Binary files may begin with "solid", too.
   const bool text = !binary_size && bytes.compare(0, 5, "solid") == 0 && bytes.find('\0') == std::string::npos;
   return text ? read_stl_text(path, bytes) : read_stl_binary(path, bytes, claimed);
 }
@@ -145,7 +146,7 @@ Polygons read_off(const char *path) {
   if (parsed.ec != std::errc() || points < 0 || faces < 0) {
     fail(TETCAST_ERROR_DATA, "%s: line %d: numbers of vertices and faces expected", path, scanner.line());
   }
-  // One vertex or face a line: what follows the coordinates or indices is normals and colours.
+  // There is one vertex or face a line. Normals and colours may follow the coordinates or indices, and are passed over.
   for (int64_t i = 0; i < points; ++i) {
     if (!scanner.next_line())
       scanner.truncated("vertices", i, points);
@@ -176,12 +177,13 @@ Polygons read_obj(const char *path) {
         result.points.push_back(scanner.number("a coordinate"));
     } else if (keyword == "f") {
       for (std::string word = scanner.word(); !word.empty(); word = scanner.word()) {
-        if (word == "\\") { // goes on in the next line
+        if (word == "\\") { // The face goes on in the next line.
           if (!scanner.next_line())
             break;
           continue;
         }
-        int64_t index = 0; // "7", "7/1", "7//3" or "7/1/3", from 1, or from the end when negative
+        // It is written "7", "7/1", "7//3" or "7/1/3", counted from 1, or from the end if it is negative.
+        int64_t index = 0;
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
         if (error != std::errc() || (end != word.data() + word.size() && *end != '/')) {
           fail(TETCAST_ERROR_DATA, "%s: line %d: a vertex index expected, not '%.40s'", path, scanner.line(),

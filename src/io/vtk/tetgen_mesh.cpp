@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// TetGen's meshes: points in .node, tetrahedra in .ele, numbered from 0 or 1. Attributes and markers become arrays.
+// Reads meshes by TetGen: points in .node and tetrahedra in .ele, numbered from 0 or 1. Attributes and markers become
+// arrays.
 #include <algorithm>
 
 #include <vtkCellArray.h>
@@ -42,7 +43,7 @@ Header read_header(tcv::Scanner *scanner, int64_t limit) {
   return header;
 }
 
-// The number at the start of the next line has to be the next.
+// Reads the number at the start of the next line, and fails unless it is the next in order.
 void begin_row(tcv::Scanner *scanner, int64_t i, int64_t count, const char *what, int64_t *base) {
   if (!scanner->next_line())
     scanner->truncated(what, i, count);
@@ -65,7 +66,7 @@ Arrays make_arrays(const Header &header, const std::string &name, const char *ma
   return arrays;
 }
 
-// An array with something that is no number is noted, and left out in the end.
+// Notes an array that has something in it which is no number. It is left out in the end.
 void read_values(tcv::Scanner *scanner, int64_t i, TetcastAssociation association, const Arrays &arrays,
                  std::vector<tcv::UnreadArray> *unread) {
   for (const auto &array : arrays) {
@@ -81,7 +82,7 @@ void read_values(tcv::Scanner *scanner, int64_t i, TetcastAssociation associatio
   }
 }
 
-// Those that are asked for and could be read.
+// Adds the arrays that are asked for and could be read.
 void add_arrays(const Arrays &arrays, TetcastAssociation association, const char *only, vtkDataSetAttributes *target,
                 std::vector<tcv::UnreadArray> *unread) {
   for (const auto &array : arrays) {

@@ -20,7 +20,7 @@
 
 namespace tcv {
 
-// The attributes that are of use here, in the order of the bits that an array has of them.
+// The attributes of VTK that are of use here. An array has a bit for each of them, in this order.
 static const int roles[] = {vtkDataSetAttributes::SCALARS, vtkDataSetAttributes::GLOBALIDS,
                             vtkDataSetAttributes::PEDIGREEIDS, vtkDataSetAttributes::HIGHERORDERDEGREES,
                             vtkDataSetAttributes::RATIONALWEIGHTS};
@@ -65,7 +65,7 @@ void WireWriter::array(vtkDataArray *given) {
   kept_.push_back(given);
   vtkSmartPointer<vtkDataArray> values = given;
   if (!given->HasStandardMemoryLayout() ||
-      given->GetDataType() == VTK_BIT) { // one number after the other, of whole bytes
+      given->GetDataType() == VTK_BIT) { // Numbers are sent one after the other, and each has whole bytes.
     const int type = given->GetDataType() == VTK_BIT ? VTK_UNSIGNED_CHAR : given->GetDataType();
     values = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
     values->DeepCopy(given);
@@ -122,7 +122,7 @@ size_t WireReader::some(void *data, size_t size) {
     if (ready <= 0) {
       if (gone)
         throw WireBroken();
-      gone = ready == 0 && !alive_(process_); // what it wrote at last is still to be read
+      gone = ready == 0 && !alive_(process_); // What the program wrote at last has still to be read.
       continue;
     }
     const ssize_t got = read(file_, data, size);
@@ -135,7 +135,7 @@ size_t WireReader::some(void *data, size_t size) {
 
 void WireReader::bytes(void *data, size_t size) {
   for (char *to = static_cast<char *>(data); size > 0;) {
-    if (at_ == end_ && size >= CHUNK) { // large ones go where they belong at once
+    if (at_ == end_ && size >= CHUNK) { // Large arrays are read to where they belong at once.
       const size_t got = some(to, size);
       to += got;
       size -= got;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writing meshes and fields as .vtu.
+// Writes meshes and fields as .vtu.
 #include "common.hpp"
 
 #include <algorithm>
@@ -59,13 +59,14 @@ static DataArray new_array(TetcastType type) {
   fail(TETCAST_ERROR_ARGUMENT, "array of unknown type %d", static_cast<int>(type));
 }
 
-// Refers to the values where they lie next to each other, else copies them.
+// Refers to the values if they lie next to each other, and copies them otherwise.
 static DataArray wrap(const TetcastArray &values, int components) {
   const DataArray array = new_array(values.type);
   array->SetNumberOfComponents(components);
   const int64_t tuple = type_size(values.type) * components;
   if (values.count > 0 && (values.stride == 0 || values.stride == tuple)) {
-    array->SetVoidArray(const_cast<void *>(values.data), values.count * components, 1); // 1: VTK does not free it
+    // The 1 says that VTK does not free it.
+    array->SetVoidArray(const_cast<void *>(values.data), values.count * components, 1);
     return array;
   }
   array->SetNumberOfTuples(values.count);
@@ -83,7 +84,7 @@ template <typename Offsets> static vtkSmartPointer<vtkCellArray> cells_of(vtkDat
   for (int64_t i = 0; i <= count; ++i)
     offsets->SetValue(i, static_cast<typename Offsets::ValueType>(4 * i));
   auto cells = vtkSmartPointer<vtkCellArray>::New();
-  connectivity->SetNumberOfComponents(1); // a flat list to VTK
+  connectivity->SetNumberOfComponents(1); // For VTK it is a flat list.
   if (!cells->SetData(offsets, connectivity))
     fail(TETCAST_ERROR_DATA, "VTK refuses the mesh's indices");
   return cells;
@@ -97,7 +98,7 @@ static vtkSmartPointer<vtkCellArray> make_cells(const TetcastMesh *mesh) {
   }
   if (tetrahedra.type == TETCAST_TYPE_INT64)
     return cells_of<vtkTypeInt64Array>(wrap(tetrahedra, 4), count);
-  vtkNew<vtkTypeInt64Array> indices; // VTK knows no unsigned ones
+  vtkNew<vtkTypeInt64Array> indices; // VTK knows no unsigned indices of that kind.
   indices->SetNumberOfComponents(4);
   indices->SetNumberOfTuples(count);
   for (int64_t i = 0; i < count; ++i) {
@@ -109,7 +110,7 @@ static vtkSmartPointer<vtkCellArray> make_cells(const TetcastMesh *mesh) {
   return cells_of<vtkTypeInt64Array>(indices, count);
 }
 
-// VTK writes names as they are.
+// Escapes a name for XML, because VTK writes names as they are.
 static std::string xml_name(const char *name) {
   std::string result;
   for (const char *c = name; *c; ++c) {
@@ -145,7 +146,7 @@ static void add_field(vtkUnstructuredGrid *grid, const TetcastMesh *mesh, const 
   array->SetName(written.c_str());
   attributes->AddArray(array);
   if (!attributes->GetScalars())
-    attributes->SetActiveScalars(written.c_str()); // the first is what readers show by default
+    attributes->SetActiveScalars(written.c_str()); // Readers show the first array by default.
 }
 
 static vtkSmartPointer<vtkUnstructuredGrid> make_grid(const TetcastMesh *mesh, int count, const char *const *names,
@@ -163,9 +164,8 @@ static vtkSmartPointer<vtkUnstructuredGrid> make_grid(const TetcastMesh *mesh, i
   return grid;
 }
 
-// A new, empty file beside the target, gone with this object unless it has become the target.
-// VTK notes errno too late, when other calls have changed it. So once more: writes as many bytes as the file could have
-// had, until that fails, and says with which error; 0: it does not fail now.
+// Returns the error that kept a file from being written, or 0 if nothing keeps it now. VTK looks at errno too late,
+// when other calls have changed it. So this function writes as many bytes as the file could have had, until that fails.
 int why_not_written(const char *path, unsigned long kibibytes) {
   static const char zeros[65536] = {};
   const int file = open(path, O_CREAT | O_WRONLY | O_TRUNC | O_CLOEXEC, 0666);
@@ -182,12 +182,13 @@ int why_not_written(const char *path, unsigned long kibibytes) {
   return error;
 }
 
-// What a path means: an existing file through all links, or where a link to nothing leads.
+// Returns the file that a path stands for: an existing file at the end of all links, or the place that a link to
+// nothing leads to.
 std::string followed(std::string path) {
   char target[PATH_MAX];
   if (realpath(path.c_str(), target))
     return target;
-  for (int i = 0; i < 40; ++i) { // as many links as the system follows
+  for (int i = 0; i < 40; ++i) { // The system follows as many links.
     const ssize_t length = readlink(path.c_str(), target, sizeof target);
     if (length <= 0)
       break;
@@ -198,7 +199,8 @@ std::string followed(std::string path) {
   return path;
 }
 
-// Its name and its lock (flock) tell the left-over of a killed process, which has no lock, from what is being written.
+// A new, empty file beside the target, which is removed with this object unless it has become the target. Its name and
+// its lock (flock) tell a file that is being written from the left-over of a killed process, which has no lock.
 class Temporary {
 public:
   explicit Temporary(const char *target) : target_(followed(target)) {
@@ -221,10 +223,10 @@ public:
       if (locked && (fstat(lock_, &own) != 0 || own.st_nlink > 0))
         continue;
       if (lock_ >= 0)
-        close(lock_); // taken for a left-over before it had its lock
+        close(lock_); // Another process took it for a left-over before it had its lock.
       lock_ = -1;
     }
-    if (exists) { // what is replaced keeps its mode and, where we may, its owner
+    if (exists) { // A file that is replaced keeps its mode and, where that is allowed, its owner.
       const bool owned = fchown(lock_, former.st_uid, former.st_gid) == 0;
       fchmod(lock_, former.st_mode & (owned ? 07777 : 0777));
     }
@@ -249,7 +251,7 @@ public:
 
 private:
   std::string target_, path_;
-  int lock_ = -1; // the file's descriptor, which holds the lock
+  int lock_ = -1; // The descriptor of the file, which holds the lock.
 };
 
 static void write_grid(const char *path, vtkUnstructuredGrid *grid, const Capture &capture) {

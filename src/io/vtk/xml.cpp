@@ -32,19 +32,19 @@
 
 namespace {
 
-constexpr int64_t MOST_POINTS_ALONE = 1 << 21; // of a structured grid without arrays
+constexpr int64_t MOST_POINTS_ALONE = 1 << 21; // The most points of a structured grid that has no arrays.
 
-// Looks at binary data before VTK does, which divides by sizes that may be zero, writes blocks that are larger than
-// they should be where they don't fit, and is content with the start of data that end early.
+// Looks at binary data before VTK does. VTK divides by sizes that may be zero, writes blocks that are larger than they
+// should be where they don't fit, and accepts data that end early.
 class Parser : public vtkXMLDataParser {
 public:
   static Parser *New() { VTK_STANDARD_NEW_BODY(Parser); }
 
-  // Whether there can be `count` values of so many bits in what `element` describes, as far as its header tells: before
+  // Returns whether `element` can hold `count` values of so many bits, as far as its header tells. It is asked before
   // memory is taken.
   bool may_hold(vtkXMLDataElement *element, uint64_t count, uint64_t bits, uint64_t file_size) {
     if (is_text(element))
-      return count <= file_size / 2 + 1; // a digit and a blank each
+      return count <= file_size / 2 + 1; // Each value takes at least a digit and a blank.
     return count <= UINT64_MAX / 64 && look(element, [&] {
              const uint64_t bytes = (count * bits + 7) / 8;
              if (this->Compressor)
@@ -54,14 +54,14 @@ public:
            });
   }
 
-  // Whether the values that `element` describes make at least `bytes` bytes.
+  // Returns whether the values that `element` describes make at least `bytes` bytes.
   bool holds(vtkXMLDataElement *element, uint64_t bytes, uint64_t file_size) {
     return is_text(element) || look(element, [&] {
              return this->Compressor ? blocks_hold(bytes, file_size) : plain_holds(bytes, file_size);
            });
   }
 
-  // The stream, where the values of an element of text begin.
+  // Returns the stream, at the place where the values of an element of text begin.
   std::istream &text_of(vtkXMLDataElement *element) {
     this->Stream->clear();
     this->SeekInlineDataPosition(element);
@@ -111,9 +111,10 @@ private:
     return true;
   }
 
-  // Number of blocks, size of each, size of a smaller last one (0: there is none), then the size of each as it is
-  // compressed: none is larger than the file, and what one of these bytes can make is limited, by 1032 for zlib, and in
-  // practice for the others.
+  // Checks compressed data. They begin with the number of blocks, the size of each, the size of a smaller last one (0
+  // if there is none), and the size that each block has when it is compressed. None of these is larger than the file.
+  // What one compressed byte can become is limited as well: to 1032 bytes for zlib, and in practice to as much for the
+  // others.
   bool blocks_hold(uint64_t bytes, uint64_t file_size) {
     uint64_t header[3];
     if (!read_header(header, 3))
@@ -143,7 +144,8 @@ private:
       const vtkTypeInt64 at = this->TellG();
       return at >= 0 && static_cast<uint64_t>(at) <= file_size && bytes <= file_size - static_cast<uint64_t>(at);
     }
-    std::vector<unsigned char> buffer(std::min<uint64_t>(bytes, 65536)); // a letter that is none ends the data
+    // A letter that does not belong there ends the data.
+    std::vector<unsigned char> buffer(std::min<uint64_t>(bytes, 65536));
     while (bytes > 0) {
       const size_t part = std::min<uint64_t>(bytes, buffer.size());
       if (this->DataStream->Read(buffer.data(), part) < part)
@@ -154,7 +156,7 @@ private:
   }
 };
 
-// What a value takes, of VTK's types; 0: is no number.
+// Returns how many bits a value of a type of VTK takes, or 0 if it is no number.
 uint64_t bits_of(int type) {
   if (type == VTK_BIT)
     return 1;
@@ -167,17 +169,17 @@ bool is_named(vtkXMLDataElement *element, const char *name) {
   return element->GetName() && std::strcmp(element->GetName(), name) == 0;
 }
 
-// What VTK leaves unchecked in readers of every kind. Arrays over points and cells that it would stumble upon are taken
-// out of the XML before it sees them, and those whose values can't be read are left out of what comes of it.
+// Checks what VTK leaves unchecked in readers of every kind. Arrays over points and cells that would make VTK fail are
+// taken out of the XML before VTK sees them. Those whose values can't be read are left out of the result.
 template <typename Base> class Guarded : public Base {
 public:
-  // Of the description, and where notes go; both must outlive the reader.
+  // Sets which arrays are wanted, and where to note those that can't be read. Both must outlive the reader.
   void set_request(const char *only, std::vector<tcv::UnreadArray> *unread) {
     only_ = only;
     unread_ = unread;
   }
 
-  // Takes out of what was read the arrays whose values could not be, and puts in those that needed another type.
+  // Takes arrays whose values could not be read out of the result, and puts in those that needed another type.
   void mend(vtkDataSet *output) {
     for (const tcv::ArrayName &one : unreadable_)
       attributes_of(output, one.association)->RemoveArray(one.name.c_str());
@@ -203,7 +205,7 @@ protected:
     return result;
   }
 
-  // Whether piece `piece` has room for what it claims; arrays that have not are taken out.
+  // Returns whether piece `piece` has room for what it claims. Arrays that have not are taken out.
   bool claims_fit(vtkXMLDataElement *piece, int64_t points, int64_t cells) {
     for (int i = 0; i < piece->GetNumberOfNestedElements(); ++i) {
       vtkXMLDataElement *group = piece->GetNestedElement(i);
@@ -220,7 +222,8 @@ protected:
         continue;
       }
       const int64_t tuples =
-          is_named(group, "Points") ? points : 0; // of others it is not known, or cells are what counts
+          // How many there are of others is not known, or the number of cells is what counts.
+          is_named(group, "Points") ? points : 0;
       for (int k = 0; k < group->GetNumberOfNestedElements(); ++k) {
         vtkXMLDataElement *array = group->GetNestedElement(k);
         const char *name = array->GetAttribute("Name");
@@ -274,7 +277,7 @@ private:
                                         : output->GetCellData();
   }
 
-  // Ghosts, and what curved cells need, are read at any rate.
+  // Ghosts, and what curved cells need, are read in any case.
   bool is_wanted(vtkXMLDataElement *group, const char *name) const {
     if (tcv::is_ghost_array(name) || tcv::may_name(only_, name))
       return true;
@@ -286,11 +289,11 @@ private:
     return false;
   }
 
-  // Takes out what is not wanted, and VTK crashes on: notes on the file and on arrays, and arrays over points and cells
-  // that are none, or of the wrong kind. False if what the mesh needs is.
+  // Takes out what is not wanted or would make VTK crash: notes on the file and on arrays, and arrays over points and
+  // cells that are no arrays, or of the wrong kind. Returns false if something that the mesh needs is among these.
   bool tidy(vtkXMLDataElement *element, int depth) {
     if (depth > 16)
-      return true; // nothing of use is so deep
+      return true; // Nothing of use is nested so deeply.
     for (int i = element->GetNumberOfNestedElements(); i-- > 0;) {
       vtkXMLDataElement *nested = element->GetNestedElement(i);
       const bool of_points = is_named(nested, "PointData"),
@@ -324,9 +327,8 @@ private:
       const char *given = array->GetAttribute("Name"), *step = array->GetAttribute("TimeStep"),
                  *type = array->GetAttribute("type");
       const std::string name = given && *given ? given : "unnamed_" + std::to_string(place);
-      const bool text =
-          type && std::strcmp(type, "String") == 0;    // is none of the numbers that anything could be made of
-      const bool later = step && std::atoi(step) != 0; // of the steps there may be the first is read
+      const bool text = type && std::strcmp(type, "String") == 0; // Nothing can be made of strings.
+      const bool later = step && std::atoi(step) != 0;            // Of several steps the first is read.
       std::string fault;
       if (!text && !later) {
         fault = fault_of(array);
@@ -349,10 +351,10 @@ private:
     }
   }
 
-  // Why an element can't be an array of numbers; empty: it can.
+  // Returns why an element can't be an array of numbers, or nothing if it can.
   static std::string fault_of(vtkXMLDataElement *array) {
     int type = 0;
-    const tcv::Doubt doubt; // VTK complains of types that it doesn't know
+    const tcv::Doubt doubt; // VTK complains of types that it doesn't know.
     if (!is_named(array, "DataArray") && !is_named(array, "Array"))
       return "it is no array";
     const char *type_name = array->GetAttribute("type"), *components = array->GetAttribute("NumberOfComponents");
@@ -373,14 +375,14 @@ private:
         ->may_hold(array, count, bits_of(type), static_cast<uint64_t>(tcv::file_size(this->GetFileName())));
   }
 
-  // Reads an array; one over points or cells that can't be read is noted, and nothing else comes of it.
+  // Reads an array. One over points or cells that can't be read is noted, and has no other consequence.
   template <typename Read>
   int attempt(vtkXMLDataElement *element, TetcastAssociation association, vtkAbstractArray *array, Read &&read) {
     const char *name = element->GetAttribute("Name");
     const bool over_these =
         element->GetParent() && is_named(element->GetParent(), association == TETCAST_POINT ? "PointData" : "CellData");
     if (!over_these || !name || tcv::is_ghost_array(name))
-      return read(); // which nothing is without
+      return read(); // Nothing can be done without this one.
     overflowed_ = false;
     std::string reason;
     {
@@ -397,7 +399,7 @@ private:
     return 1;
   }
 
-  // Values of single precision that only double holds are read again.
+  // Values that claim to be of single precision, but need double, are read again.
   void widen(vtkXMLDataElement *element, TetcastAssociation association, vtkAbstractArray *array) {
     auto wide = vtkSmartPointer<vtkDoubleArray>::New();
     wide->SetName(array->GetName());
@@ -408,7 +410,7 @@ private:
       wider_.emplace_back(association, wide);
   }
 
-  // By row where a piece is a part of a structured grid: what comes first is read over.
+  // Reads a part of a structured grid row by row. Values that come before the part are passed over.
   int read_text(vtkXMLDataElement *element, vtkIdType index, vtkDataArray *array, vtkIdType start, vtkIdType count) {
     if (text_element_ != element || text_at_ > start) {
       static_cast<Parser *>(this->XMLParser)->text_of(element);
@@ -447,7 +449,7 @@ private:
     const bool of_cells =
         name && (!std::strcmp(name, "connectivity") || !std::strcmp(name, "offsets") || !std::strcmp(name, "types"));
     if (reader.word().empty() && of_cells)
-      return 0; // VTK says so
+      return 0; // VTK reports this itself.
     if (reader.word().empty())
       vtkErrorMacro("array '" << (name ? name : "") << "' has only " << have << " values: it is too short");
     else
@@ -464,12 +466,13 @@ private:
   std::vector<std::pair<TetcastAssociation, vtkSmartPointer<vtkDataArray>>> wider_;
   bool overflowed_ = false;
   const vtkXMLDataElement *text_element_ =
-      nullptr; // whose text was read up to value text_at_, at text_place_ in the file
+      nullptr; // Its text was read up to value text_at_, which is at text_place_ in the file.
   vtkIdType text_at_ = 0;
   std::istream::pos_type text_place_ = 0;
 };
 
-// VTK allocates and clears what a header claims before it looks for the data, and takes negative counts as they are.
+// Checks counts, because VTK allocates and clears as much as a header claims before it looks for the data, and takes
+// negative counts as they are.
 template <typename Base> class Checked : public Guarded<Base> {
 public:
   static Checked *New() { VTK_STANDARD_NEW_BODY(Checked); }
@@ -482,7 +485,8 @@ protected:
       return 0;
     const vtkIdType points = this->GetNumberOfPointsInPiece(this->Piece),
                     cells = this->GetNumberOfCellsInPiece(this->Piece);
-    const int64_t limit = 256 * tcv::file_size(this->GetFileName()); // compressed, the best mesh stays far below
+    // Even the best compressed mesh stays far below this.
+    const int64_t limit = 256 * tcv::file_size(this->GetFileName());
     if (points >= 0 && cells >= 0 && points <= limit && cells <= limit)
       return this->claims_fit(element, points, cells);
     vtkErrorMacro("piece " << this->Piece << " claims " << points << " points and " << cells
@@ -491,7 +495,7 @@ protected:
   }
 };
 
-// Structured grids: extents instead of counts, and pieces that have to cover the whole.
+// Checks structured grids, which have extents instead of counts, and whose pieces have to cover the whole.
 template <typename Base> class Structured : public Guarded<Base> {
 public:
   static Structured *New() { VTK_STANDARD_NEW_BODY(Structured); }
@@ -511,7 +515,7 @@ protected:
   int ReadPrimaryElement(vtkXMLDataElement *element) override {
     if (!Base::ReadPrimaryElement(element))
       return 0;
-    // Before any piece is read: an array of equal values is compressed to a thousandth and less.
+    // This happens before any piece is read, because an array of equal values is compressed to a thousandth and less.
     const double limit = 4096.0 * static_cast<double>(tcv::file_size(this->GetFileName()));
     const double points = size(this->WholeExtent, 1);
     const double cells = size(this->WholeExtent, 0);
@@ -556,10 +560,10 @@ private:
     return nullptr;
   }
 
-  // VTK takes the first piece's arrays for those of all, one after the other: what is not the same in all pieces is
-  // left out.
+  // Leaves out arrays that are not the same in all pieces, because VTK takes the arrays of the first piece, one after
+  // the other, for those of all.
   void unify(vtkXMLDataElement **groups, TetcastAssociation association) {
-    std::vector<std::string> names; // of any piece
+    std::vector<std::string> names; // All names that are in any of the pieces.
     for (int i = 0; i < this->NumberOfPieces; ++i) {
       for (int k = 0; groups[i] && k < groups[i]->GetNumberOfNestedElements(); ++k) {
         const std::string name = text(groups[i]->GetNestedElement(k), "Name", "");
@@ -582,7 +586,7 @@ private:
           continue;
         groups[i]->RemoveNestedElement(array);
         if (good)
-          groups[i]->AddNestedElement(array); // at the end: in the same order everywhere
+          groups[i]->AddNestedElement(array); // It goes to the end, so that the order is the same in all pieces.
       }
     }
   }
@@ -604,16 +608,16 @@ public:
 protected:
   int ReadPieceData() override { return faces_fit() ? vtkXMLUnstructuredGridReader::ReadPieceData() : 0; }
 
-  // VTK takes the first piece's arrays for those of all: it passes over others, and puts the values of one into another
-  // that it expects in its place.
+  // Adds to each piece the arrays that only others have. VTK takes the arrays of the first piece for those of all: it
+  // passes over others, and puts the values of one array into another one that it expects in its place.
   void SetupOutputInformation(vtkInformation *information) override {
     Checked::SetupOutputInformation(information);
-    for (int i = 0; i < this->NumberOfPieces; ++i) { // those there are already stay as they are
+    for (int i = 0; i < this->NumberOfPieces; ++i) { // Arrays that are there already stay as they are.
       add_all(this->PointDataElements[i], this->PointDataArraySelection);
       add_all(this->CellDataElements[i], this->CellDataArraySelection);
     }
   }
-  void SetupOutputData() override { // pieces are read one by one
+  void SetupOutputData() override { // Pieces are read one by one.
     const int piece = this->StartPiece < this->NumberOfPieces ? this->StartPiece : 0;
     std::swap(this->PointDataElements[0], this->PointDataElements[piece]);
     std::swap(this->CellDataElements[0], this->CellDataElements[piece]);
@@ -646,16 +650,16 @@ private:
     return result;
   }
 
-  // VTK walks the faces of polyhedra, and writes to them, without looking where they end.
+  // Checks the faces of polyhedra, because VTK goes through them, and writes to them, without looking where they end.
   bool faces_fit() {
     vtkXMLDataElement *cells = this->CellElements[this->Piece];
     const int64_t count = this->NumberOfCells[this->Piece];
     vtkXMLDataElement *of_faces = this->FindDataArrayWithName(cells, "faces");
     vtkXMLDataElement *of_ends = this->FindDataArrayWithName(cells, "faceoffsets");
     if (!of_faces || !of_ends || count == 0)
-      return true; // what is missing is noticed by VTK
+      return true; // VTK notices itself what is missing.
     const Numbers ends = numbers(of_ends, count);
-    int64_t size = 0; // as VTK takes it: the last end there is
+    int64_t size = 0; // VTK takes the last end for the size.
     for (int64_t i = 0; ends && i < count; ++i)
       size = ends->GetValue(i) > -1 ? ends->GetValue(i) : size;
     const Numbers faces = ends ? numbers(of_faces, size) : nullptr;
@@ -680,7 +684,7 @@ private:
   }
 };
 
-// What the reader makes of the file. `unread`: see set_request().
+// Returns what the reader makes of the file. For `unread` see set_request().
 template <typename Reader>
 auto read(const char *path, const char *only = nullptr, std::vector<tcv::UnreadArray> *unread = nullptr) {
   vtkNew<Reader> reader;
@@ -696,7 +700,8 @@ template <typename Reader> void read_structured(const tcv::Reading &reading, tcv
   const auto grid = tcv::captured(
       reading.context, path, [&] { return read<Structured<Reader>>(path, reading.desc->only, &contents->unread); });
   const int64_t arrays = grid->GetPointData()->GetNumberOfArrays() + grid->GetCellData()->GetNumberOfArrays();
-  if (arrays == 0 && grid->GetNumberOfPoints() > MOST_POINTS_ALONE) { // of which the file holds none but their number
+  // The file holds nothing of these points but their number.
+  if (arrays == 0 && grid->GetNumberOfPoints() > MOST_POINTS_ALONE) {
     tcv::fail(TETCAST_ERROR_DATA, "%s: claims %lld points, and has no data for them", path,
               static_cast<long long>(grid->GetNumberOfPoints()));
   }
@@ -717,7 +722,7 @@ void read_vtu(const Reading &reading, Contents *contents) {
     const int count = std::max(reader->pieces(), 1);
     for (int i = 0; i < count; ++i) {
       if (!reader->UpdatePiece(i, count, 0))
-        break; // has been said why
+        break; // The reason has been reported already.
       reader->mend(reader->GetOutput());
       grids.push_back(Grid::New());
       grids.back()->ShallowCopy(reader->GetOutput());
@@ -738,8 +743,9 @@ void read_vts(const Reading &reading, Contents *contents) {
   read_structured<vtkXMLStructuredGridReader>(reading, contents);
 }
 
+// Reads a surface without its arrays.
 vtkSmartPointer<vtkPolyData> read_vtp(const char *path) {
   return read<Checked<vtkXMLPolyDataReader>>(path, "");
-} // without arrays
+}
 
 } // namespace tcv
