@@ -250,6 +250,7 @@ contains
 
     render_desc = tetcast_render_desc_default()
     render_desc%progress%function = c_funloc(refuse)
+    call tetcast_check(tetcast_context_set_threads(context, 1_c_int)) ! others might be done before the calling one reports
     call expect(tetcast_scene_render(scene, camera(), render_desc, frame, stats) == tetcast_error_cancelled, 'cancelled')
     call expect(calls_of_progress == 1, 'one call of the progress function')
 
