@@ -18,8 +18,9 @@ file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/package/tetcast-config.cmake @ONLY C
 # tetcast::fortran is the Fortran module, compiled with the project that uses it, which must have enabled Fortran.
 include("${CMAKE_CURRENT_LIST_DIR}/tetcast-targets.cmake")
 if("fortran" IN_LIST tetcast_FIND_COMPONENTS AND CMAKE_Fortran_COMPILER AND NOT TARGET tetcast_fortran)
-  add_library(tetcast_fortran STATIC "${CMAKE_CURRENT_LIST_DIR}/@to_data@/tetcast.f90")
-  set_target_properties(tetcast_fortran PROPERTIES Fortran_MODULE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/tetcast-fortran")
+  add_library(tetcast_fortran STATIC EXCLUDE_FROM_ALL "${CMAKE_CURRENT_LIST_DIR}/@to_data@/tetcast.f90")
+  set_target_properties(tetcast_fortran PROPERTIES POSITION_INDEPENDENT_CODE ON
+    Fortran_MODULE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/tetcast-fortran")
   target_include_directories(tetcast_fortran PUBLIC "${CMAKE_CURRENT_BINARY_DIR}/tetcast-fortran")
   target_link_libraries(tetcast_fortran PUBLIC tetcast::tetcast)
   add_library(tetcast::fortran ALIAS tetcast_fortran)
