@@ -10,9 +10,21 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tetcast)
 install(EXPORT tetcast-targets NAMESPACE tetcast:: DESTINATION ${package_dir})
 
 # What the libraries are linked with is private to them: a client needs neither Embree's nor VTK's CMake package.
+# The Fortran module is installed as its source, as what one compiler makes of it no other one can read.
+install(FILES fortran/tetcast.f90 DESTINATION ${CMAKE_INSTALL_DATADIR}/tetcast)
+file(RELATIVE_PATH to_data ${CMAKE_INSTALL_PREFIX}/${package_dir} ${CMAKE_INSTALL_FULL_DATADIR}/tetcast)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/package/tetcast-config.cmake @ONLY CONTENT [[
-# find_package(tetcast [COMPONENTS vtk tetgen openimageio]): target tetcast::tetcast, and one for each adapter that is installed.
+# find_package(tetcast [COMPONENTS vtk tetgen openimageio fortran]): target tetcast::tetcast, and one for each adapter that is installed.
+# tetcast::fortran is the Fortran module, compiled with the project that uses it, which must have enabled Fortran.
 include("${CMAKE_CURRENT_LIST_DIR}/tetcast-targets.cmake")
+if("fortran" IN_LIST tetcast_FIND_COMPONENTS AND CMAKE_Fortran_COMPILER AND NOT TARGET tetcast_fortran)
+  add_library(tetcast_fortran STATIC EXCLUDE_FROM_ALL "${CMAKE_CURRENT_LIST_DIR}/@to_data@/tetcast.f90")
+  set_target_properties(tetcast_fortran PROPERTIES POSITION_INDEPENDENT_CODE ON
+    Fortran_MODULE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/tetcast-fortran")
+  target_include_directories(tetcast_fortran PUBLIC "${CMAKE_CURRENT_BINARY_DIR}/tetcast-fortran")
+  target_link_libraries(tetcast_fortran PUBLIC tetcast::tetcast)
+  add_library(tetcast::fortran ALIAS tetcast_fortran)
+endif()
 foreach(component IN LISTS tetcast_FIND_COMPONENTS)
   if(TARGET tetcast::${component})
     set(tetcast_${component}_FOUND TRUE)
@@ -21,6 +33,9 @@ foreach(component IN LISTS tetcast_FIND_COMPONENTS)
     if(tetcast_FIND_REQUIRED_${component})
       set(tetcast_FOUND FALSE)
       set(tetcast_NOT_FOUND_MESSAGE "this tetcast has no component \"${component}\": it was built without it")
+      if(component STREQUAL "fortran")
+        set(tetcast_NOT_FOUND_MESSAGE "the component \"fortran\" needs a project that has enabled Fortran")
+      endif()
     endif()
   endif()
 endforeach()
@@ -35,11 +50,13 @@ function(tetcast_pkgconfig name description requires)
   set(from ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig)
   file(RELATIVE_PATH to_prefix ${from} ${CMAKE_INSTALL_PREFIX})
   file(RELATIVE_PATH to_include ${from} ${CMAKE_INSTALL_FULL_INCLUDEDIR})
+  file(RELATIVE_PATH to_data ${from} ${CMAKE_INSTALL_FULL_DATADIR}/tetcast)
   string(REGEX REPLACE "/$" "" to_prefix "${to_prefix}")
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/package/${name}.pc @ONLY CONTENT [[
 prefix=${pcfiledir}/@to_prefix@
 libdir=${pcfiledir}/..
 includedir=${pcfiledir}/@to_include@
+fortran=${pcfiledir}/@to_data@/tetcast.f90
 
 Name: @name@
 Description: @description@

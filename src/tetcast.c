@@ -143,6 +143,8 @@ TetcastStatus tetcast_mesh_create(TetcastContext *context, const TetcastMeshDesc
       (tc_type_size(desc->tetrahedra.type) == 0 || tc_type_is_float(desc->tetrahedra.type))) {
     return ARGUMENT(context, "tetrahedra must be of an integer type");
   }
+  if (desc->index_base != 0 && desc->index_base != 1)
+    return ARGUMENT(context, "an index base of %d: it is 0 or 1", desc->index_base);
   return tc_call(mesh_create, &(MeshCreate){context, desc, mesh}, NULL);
 }
 
@@ -165,6 +167,9 @@ TetcastArray tetcast_mesh_vertices(const TetcastMesh *mesh) {
 }
 TetcastArray tetcast_mesh_tetrahedra(const TetcastMesh *mesh) {
   return mesh->tetrahedra;
+}
+int tetcast_mesh_index_base(const TetcastMesh *mesh) {
+  return mesh->index_base;
 }
 void tetcast_mesh_vertex(const TetcastMesh *mesh, int64_t i, double position[3]) {
   TC_ENTRY;

@@ -21,10 +21,15 @@ typedef struct TetcastMeshDesc {
   uint32_t cookie;
   /* [n, 3] float32 or float64: the coordinates of the vertices, finite, in any unit of length. */
   TetcastArray vertices;
-  /* [m, 4] int32, uint32, int64 or uint64, each in [0, n): the vertices of each tetrahedron, in any order. */
+  /* [m, 4] int32, uint32, int64 or uint64, each in [index_base, index_base + n): the vertices of each tetrahedron, in
+   * any order. */
   TetcastArray tetrahedra;
   /* Whether the two arrays are copied (the default) or borrowed. */
   TetcastOwnership ownership;
+  /* The number that `tetrahedra` has for the first vertex: 0 (the default), or 1 as in Fortran. Arrays are borrowed
+   * with either. What tetcast_mesh_create() says of vertices and tetrahedra counts both from there; all else in the
+   * library counts from 0. */
+  int index_base;
 } TetcastMeshDesc;
 
 /* Makes a desc of an empty mesh that copies its arrays. */
@@ -47,13 +52,17 @@ TETCAST_API int64_t tetcast_mesh_tetrahedron_count(const TetcastMesh *mesh);
 /* [n, 3]: the vertices, of the type they came in; valid while the mesh lives. */
 TETCAST_API TetcastArray tetcast_mesh_vertices(const TetcastMesh *mesh);
 
-/* [m, 4]: the tetrahedra, of the type they came in; valid while the mesh lives. */
+/* [m, 4]: the tetrahedra, of the type they came in, counting vertices from tetcast_mesh_index_base(); valid while the
+ * mesh lives. */
 TETCAST_API TetcastArray tetcast_mesh_tetrahedra(const TetcastMesh *mesh);
+
+/* The number that the array of tetrahedra has for the first vertex, 0 or 1: as it was given. */
+TETCAST_API int tetcast_mesh_index_base(const TetcastMesh *mesh);
 
 /* The coordinates of vertex i in [0, n) as doubles. */
 TETCAST_API void tetcast_mesh_vertex(const TetcastMesh *mesh, int64_t i, double position[3]);
 
-/* The vertices of tetrahedron i in [0, m). */
+/* The vertices of tetrahedron i in [0, m), each in [0, n). */
 TETCAST_API void tetcast_mesh_tetrahedron(const TetcastMesh *mesh, int64_t i, int64_t indices[4]);
 
 /* Bounds of the vertices that tetrahedra use: xmin, xmax, ymin, ymax, zmin, zmax; all zero for a mesh without cells. */

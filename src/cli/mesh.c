@@ -171,6 +171,7 @@ static TetcastStatus make_single(TetcastContext *context, TetcastMesh **mesh) {
   TetcastMeshDesc desc = tetcast_mesh_desc_default();
   desc.vertices = (TetcastArray){.data = vertices, .type = TETCAST_TYPE_FLOAT32, .count = count};
   desc.tetrahedra = tetcast_mesh_tetrahedra(*mesh);
+  desc.index_base = tetcast_mesh_index_base(*mesh);
   TetcastMesh *single = NULL;
   const TetcastStatus status = tetcast_mesh_create(context, &desc, &single);
   free(vertices);

@@ -36,19 +36,23 @@ static bool check_vertices(void *data, int64_t begin, int64_t end, int worker) {
   return true;
 }
 
+static bool in_range(const TetcastMesh *mesh, int64_t given) {
+  return given >= mesh->index_base && given - mesh->index_base < mesh->vertices.count;
+}
+
 static bool check_tetrahedra(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   Check *check = data;
   const TetcastMesh *mesh = check->mesh;
   for (int64_t i = begin; i < end; ++i) {
     int64_t v[4];
-    tc_mesh_tetrahedron(mesh, i, v);
+    tc_mesh_given(mesh, i, v);
     for (int k = 0; k < 4; ++k) {
-      if (v[k] < 0 || v[k] >= mesh->vertices.count) {
+      if (!in_range(mesh, v[k])) {
         found_bad(check, i);
         return true;
       }
-      atomic_store_explicit(&check->used[v[k]], 1, memory_order_relaxed);
+      atomic_store_explicit(&check->used[v[k] - mesh->index_base], 1, memory_order_relaxed);
     }
   }
   return true;
@@ -58,18 +62,19 @@ static TetcastStatus report_vertex(const TetcastMesh *mesh, int64_t i) {
   double p[3];
   tc_mesh_vertex(mesh, i, p);
   return tc_error(mesh->context, TETCAST_ERROR_DATA,
-                  "vertex %" PRId64 " has a coordinate that is not finite: (%g, %g, %g)", i, p[0], p[1], p[2]);
+                  "vertex %" PRId64 " has a coordinate that is not finite: (%g, %g, %g)", i + mesh->index_base, p[0],
+                  p[1], p[2]);
 }
 
 static TetcastStatus report_tetrahedron(const TetcastMesh *mesh, int64_t i) {
   int64_t v[4];
-  tc_mesh_tetrahedron(mesh, i, v);
+  tc_mesh_given(mesh, i, v);
   int k = 0;
-  while (k < 3 && v[k] >= 0 && v[k] < mesh->vertices.count)
+  while (k < 3 && in_range(mesh, v[k]))
     ++k;
   return tc_error(mesh->context, TETCAST_ERROR_DATA,
-                  "tetrahedron %" PRId64 " names vertex %" PRId64 ", but there are %" PRId64 " vertices", i, v[k],
-                  mesh->vertices.count);
+                  "tetrahedron %" PRId64 " names vertex %" PRId64 ", but there are %" PRId64 " vertices%s",
+                  i + mesh->index_base, v[k], mesh->vertices.count, mesh->index_base ? ", counted from 1" : "");
 }
 
 /* Up to here, everything that is computed from coordinates stays finite, such as a camera that sees all of them. */
@@ -136,6 +141,7 @@ TetcastStatus tc_mesh_create(TetcastContext *context, const TetcastMeshDesc *des
     return TETCAST_ERROR_MEMORY;
   memset(mesh, 0, sizeof *mesh);
   mesh->context = context;
+  mesh->index_base = desc->index_base;
   TetcastStatus status =
       tc_array_keep(context, &desc->vertices, 3, desc->ownership, "vertices", &mesh->vertices, &mesh->vertex_memory);
   if (!status) {

@@ -14,6 +14,7 @@ struct TetcastMesh {
   TetcastArray vertices, tetrahedra;
   void *vertex_memory, *tetrahedron_memory; /* NULL when borrowed */
   double bounds[6];
+  int index_base; /* the number that the tetrahedra have for the first vertex, 0 or 1 */
 };
 
 struct TetcastField {
@@ -47,7 +48,8 @@ static inline void tc_mesh_vertex(const TetcastMesh *mesh, int64_t i, double pos
   }
 }
 
-static inline void tc_mesh_tetrahedron(const TetcastMesh *mesh, int64_t i, int64_t indices[4]) {
+/* The vertices of a cell as they were given: counted from the index base, and perhaps not checked yet. */
+static inline void tc_mesh_given(const TetcastMesh *mesh, int64_t i, int64_t indices[4]) {
   if (mesh->tetrahedra.type == TETCAST_TYPE_INT32) {
     int32_t v[4];
     memcpy(v, (const char *)mesh->tetrahedra.data + i * mesh->tetrahedra.stride, sizeof v);
@@ -59,7 +61,14 @@ static inline void tc_mesh_tetrahedron(const TetcastMesh *mesh, int64_t i, int64
   }
 }
 
-/* The same for cells that have been checked: indices fit 31 bits, whatever type they came in. */
+/* The vertices of a cell that has been checked, counted from 0. */
+static inline void tc_mesh_tetrahedron(const TetcastMesh *mesh, int64_t i, int64_t indices[4]) {
+  tc_mesh_given(mesh, i, indices);
+  for (int k = 0; k < 4; ++k)
+    indices[k] -= mesh->index_base;
+}
+
+/* The same as indices of 31 bits, whatever type they came in. */
 static inline void tc_mesh_cell(const TetcastMesh *mesh, int64_t i, uint32_t vertices[4]) {
   const char *tuple = (const char *)mesh->tetrahedra.data + i * mesh->tetrahedra.stride;
   if (mesh->tetrahedra.type == TETCAST_TYPE_INT32 || mesh->tetrahedra.type == TETCAST_TYPE_UINT32) {
@@ -70,6 +79,8 @@ static inline void tc_mesh_cell(const TetcastMesh *mesh, int64_t i, uint32_t ver
     for (int k = 0; k < 4; ++k)
       vertices[k] = (uint32_t)v[k];
   }
+  for (int k = 0; k < 4; ++k)
+    vertices[k] -= (uint32_t)mesh->index_base;
 }
 
 static inline double tc_field_at(const TetcastField *field, int64_t i) {

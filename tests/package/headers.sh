@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# headers.sh FOLDER…: every public header in FOLDER/tetcast compiles alone, as C and as C++, without a warning; and every field of a public struct
+# headers.sh FOLDER…: every public header in FOLDER/tetcast compiles alone, as C and as C++ (.hpp as C++17), without a warning; and every field of a public struct
 # stands on a line of its own, below a comment of its own.
 set -eu
 status=0 count=0
@@ -29,9 +29,14 @@ check_fields() {
 }
 
 for folder in "$@"; do
-  for header in "$folder"/tetcast/*.h; do
+  for header in "$folder"/tetcast/*.h "$folder"/tetcast/*.hpp; do
+    [ -f "$header" ] || continue
     name=tetcast/$(basename "$header")
-    for language in c:c99 c:c17 c++:c++11 c++:c++17; do
+    languages='c:c99 c:c17 c++:c++11 c++:c++17'
+    case $name in
+      *.hpp) languages='c++:c++17 c++:c++20' ;;
+    esac
+    for language in $languages; do
       compiler=$CC
       case $language in
         c++:*)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # install.sh SOURCE BUILD WORK: installs BUILD, moves the installed tree, and builds and runs tests/examples against it, with
-# CMake and with pkg-config. Environment: CC, ADAPTERS (separated by spaces).
+# CMake and with pkg-config. Environment: CC, FORTRAN (a compiler, or empty), ADAPTERS (separated by spaces).
 set -eu
 source=$1 build=$2 work=$3
 rm -rf "$work"
@@ -37,7 +37,7 @@ done
 
 # run FOLDER: the examples that were built there.
 run() {
-  for example in minimal diffusion; do
+  for example in minimal diffusion ${FORTRAN:+heat}; do
     (cd "$1" && quietly "./$example" && cp "$work/log" "$example.log") || exit 1
   done
   for picture in minimal.ppm "$2"; do
@@ -55,10 +55,11 @@ case " $ADAPTERS " in
   *" openimageio "*) picture=diffusion.png ;;
 esac
 quietly cmake -S "$source/tests/examples" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$CC" \
-  -DCMAKE_C_FLAGS="-O2 -Wall -Wextra -Wpedantic -Wconversion -Werror"
+  -DCMAKE_Fortran_COMPILER="${FORTRAN:-NOTFOUND}" -DCMAKE_C_FLAGS="-O2 -Wall -Wextra -Wpedantic -Wconversion -Werror"
 quietly cmake --build "$work/cmake"
 run "$work/cmake" $picture
 shows "$work/cmake/minimal.ppm"
+[ -z "${FORTRAN-}" ] || shows "$work/cmake/heat4.ppm"
 
 # Every adapter is found by name, with VTK's and everybody else's CMake packages out of sight; a version or component that
 # isn't there is refused.
@@ -83,6 +84,8 @@ client() {
 for adapter in $ADAPTERS; do
   client "REQUIRED COMPONENTS $adapter" "$adapter" || fail "component $adapter can't be used: $(cat "$work/log")"
 done
+client "REQUIRED COMPONENTS fortran" tetcast && fail "the Fortran module was found in a project without Fortran"
+grep -q 'enabled Fortran' "$work/log" || fail "the message does not name Fortran: $(cat "$work/log")"
 client "99 REQUIRED" tetcast && fail "version 99 was found"
 client "REQUIRED COMPONENTS nonesuch" tetcast && fail "component nonesuch was found"
 grep -q 'no component "nonesuch"' "$work/log" || fail "the message does not name the component: $(cat "$work/log")"
@@ -97,7 +100,13 @@ cd "$source/tests/examples"
 quietly "$CC" minimal.c $(pkg-config --cflags --libs tetcast) -o "$work/pkg-config/minimal"
 # shellcheck disable=SC2046
 quietly "$CC" diffusion.c kuhn.c $(pkg-config --cflags --libs tetcast) -lm -o "$work/pkg-config/diffusion"
+if [ -n "${FORTRAN-}" ]; then
+  # shellcheck disable=SC2046
+  (cd "$work/pkg-config" && quietly "$FORTRAN" "$(pkg-config --variable=fortran tetcast)" "$source/tests/examples/heat.f90" \
+    $(pkg-config --libs tetcast) -o heat) || exit 1
+fi
 run "$work/pkg-config" diffusion.ppm
+[ -z "${FORTRAN-}" ] || cmp "$work/cmake/heat4.ppm" "$work/pkg-config/heat4.ppm" || fail "the two builds of heat.f90 differ in their pictures"
 shows "$work/pkg-config/diffusion.ppm"
 cmp "$work/cmake/minimal.ppm" "$work/pkg-config/minimal.ppm" || fail "the two builds of minimal.c differ in their pictures"
 for adapter in $ADAPTERS; do

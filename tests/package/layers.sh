@@ -83,7 +83,7 @@ for adapter in src/io/*/; do
   check "io/$(basename "$adapter")" io/floating.hpp
 done
 for folder in src/*/; do
-  case " $core io cli " in
+  case " $core io cli fortran " in
     *" $(basename "$folder") "*) ;;
     *) complain "$folder is not one of the folders that are tested" ;;
   esac

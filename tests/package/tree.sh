@@ -27,7 +27,7 @@ for name in $(list | sed 's|/.*||' | sort -u); do
   esac
 done
 
-for file in $(list | grep -E '\.(c|h|cpp|in|cmake|sh|py)$|CMakeLists\.txt$'); do
+for file in $(list | grep -E '\.(c|h|cpp|hpp|f90|in|cmake|sh|py)$|CMakeLists\.txt$'); do
   [ -f "$file" ] || continue # deleted, not yet committed
   head -n 3 "$file" | grep -q 'SPDX-License-Identifier: Apache-2.0' || complain "$file does not name its licence"
 done

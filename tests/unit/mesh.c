@@ -219,6 +219,110 @@ static void arrays_of_any_shape(void **state) {
   fixture_end(&fixture);
 }
 
+/* The cube's cells in an array of this type, with the index base added. */
+static TetcastMesh *mesh_counted_from(Fixture *fixture, const Cube *cube, TetcastType type, TetcastOwnership ownership,
+                                      int base, void *cells) {
+  const bool wide = type == TETCAST_TYPE_INT64 || type == TETCAST_TYPE_UINT64;
+  for (int64_t i = 0; i < 4 * cube->cell_count; ++i) {
+    if (wide)
+      ((int64_t *)cells)[i] = cube->cells[i] + base;
+    else
+      ((int32_t *)cells)[i] = (int32_t)cube->cells[i] + base;
+  }
+  TetcastMeshDesc desc = tetcast_mesh_desc_default();
+  desc.vertices = (TetcastArray){cube->vertices, TETCAST_TYPE_FLOAT64, cube->vertex_count, 0};
+  desc.tetrahedra = (TetcastArray){cells, type, cube->cell_count, 0};
+  desc.ownership = ownership;
+  desc.index_base = base;
+  TetcastMesh *mesh;
+  assert_int_equal(tetcast_mesh_create(fixture->context, &desc, &mesh), TETCAST_OK);
+  assert_int_equal(tetcast_mesh_index_base(mesh), base);
+  assert_int_equal(tetcast_mesh_tetrahedra(mesh).data == cells, ownership == TETCAST_BORROW);
+  return mesh;
+}
+
+static double *picture_of(Fixture *fixture, const Cube *cube, const TetcastMesh *mesh) {
+  Body body = body_of(fixture->context, mesh, TETCAST_TRAVERSAL_SHELL, cube->values, cube->vertex_count, TETCAST_POINT);
+  TetcastTransferFunction *transfer = transfer_of(fixture->context, 2);
+  const TetcastCamera camera = camera_of(3, 2, 1.5, 0.5, 0.5, 0.5);
+  double *pixels = picture(fixture->context, &body, transfer, &camera, 40, 30, NULL);
+  tetcast_transfer_function_destroy(&transfer);
+  body_destroy(&body);
+  return pixels;
+}
+
+/* Of any type, copied or borrowed: the same picture to the bit, the same health, the same cells. */
+static void cells_counted_from_one(void **state) {
+  (void)state;
+  Fixture fixture;
+  assert_int_equal(fixture_begin(&fixture, 2, 0), TETCAST_OK);
+  Cube cube = cube_create(5, 0.4);
+  void *cells = malloc((size_t)cube.cell_count * 4 * sizeof(int64_t));
+  TetcastMesh *mesh = cube_mesh(fixture.context, &cube);
+  double *expected = picture_of(&fixture, &cube, mesh);
+  TetcastMeshHealth health, expected_health;
+  assert_int_equal(tetcast_mesh_health(fixture.context, mesh, &expected_health), TETCAST_OK);
+  tetcast_mesh_destroy(&mesh);
+  for (TetcastType type = TETCAST_TYPE_INT32; type <= TETCAST_TYPE_UINT64; ++type) {
+    for (int ownership = 0; ownership < 2; ++ownership) {
+      mesh = mesh_counted_from(&fixture, &cube, type, ownership ? TETCAST_BORROW : TETCAST_COPY, 1, cells);
+      double *pixels = picture_of(&fixture, &cube, mesh);
+      assert_memory_equal(pixels, expected, 40 * 30 * 4 * sizeof *pixels);
+      free(pixels);
+      assert_int_equal(tetcast_mesh_health(fixture.context, mesh, &health), TETCAST_OK);
+      assert_memory_equal(&health, &expected_health, sizeof health);
+      int64_t v[4];
+      tetcast_mesh_tetrahedron(mesh, 7, v);
+      assert_memory_equal(v, &cube.cells[4 * 7], sizeof v);
+      tetcast_mesh_destroy(&mesh);
+    }
+  }
+  free(expected);
+  free(cells);
+  cube_destroy(&cube);
+  fixture_end(&fixture);
+}
+
+/* Numbers in messages are those that the caller has. */
+static void index_bases_are_checked(void **state) {
+  (void)state;
+  Fixture fixture;
+  assert_int_equal(fixture_begin(&fixture, 1, 0), TETCAST_OK);
+  static const struct {
+    int64_t given;
+    const char *words;
+  } bad[] = {{0, "tetrahedron 2 names vertex 0, but there are 5 vertices, counted from 1"},
+             {6, "tetrahedron 2 names vertex 6, but there are 5 vertices, counted from 1"},
+             {INT64_MIN, "names vertex -9223372036854775808,"},
+             {INT64_MAX, "names vertex 9223372036854775807,"}};
+  TetcastMesh *mesh;
+  TetcastMeshDesc desc = tetcast_mesh_desc_default();
+  desc.vertices = (TetcastArray){corners, TETCAST_TYPE_FLOAT64, 5, 0};
+  desc.index_base = 1;
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {
+    const int64_t cells[8] = {1, 2, 3, 4, 2, bad[i].given, 3, 5};
+    desc.tetrahedra = (TetcastArray){cells, TETCAST_TYPE_INT64, 2, 0};
+    assert_int_equal(tetcast_mesh_create(fixture.context, &desc, &mesh), TETCAST_ERROR_DATA);
+    assert_non_null(strstr(fixture.message, bad[i].words));
+  }
+  const int32_t good[4] = {1, 2, 3, 5};
+  desc.tetrahedra = (TetcastArray){good, TETCAST_TYPE_INT32, 1, 0};
+  double vertices[5][3];
+  memcpy(vertices, corners, sizeof corners);
+  vertices[2][1] = NAN;
+  desc.vertices.data = vertices;
+  assert_int_equal(tetcast_mesh_create(fixture.context, &desc, &mesh), TETCAST_ERROR_DATA);
+  assert_non_null(strstr(fixture.message, "vertex 3 has"));
+  desc.vertices.data = corners;
+  static const int bases[] = {-1, 2, INT32_MAX};
+  for (int i = 0; i < 3; ++i) {
+    desc.index_base = bases[i];
+    assert_int_equal(tetcast_mesh_create(fixture.context, &desc, &mesh), TETCAST_ERROR_ARGUMENT);
+    assert_non_null(strstr(fixture.message, "index base"));
+  }
+  fixture_end(&fixture);
+}
+
 /* Vertices that no cell names may be anywhere. */
 static void bounds_are_those_of_the_cells(void **state) {
   (void)state;
@@ -299,6 +403,8 @@ int main(void) {
       cmocka_unit_test(three_cells_at_a_face_are_nonmanifold),
       cmocka_unit_test(cube_is_healthy),
       cmocka_unit_test(arrays_of_any_shape),
+      cmocka_unit_test(cells_counted_from_one),
+      cmocka_unit_test(index_bases_are_checked),
       cmocka_unit_test(bounds_are_those_of_the_cells),
       cmocka_unit_test(fields),
       cmocka_unit_test(ranges_of_long_fields),

@@ -133,6 +133,36 @@ static void test_round_trip(void **state) {
   free(a);
 }
 
+/* Files count from 0, whatever the mesh counts from. */
+static void test_counted_from_one(void **state) {
+  Fixture *fixture = *state;
+  Arrays *a = make_arrays();
+  int64_t(*cells)[4] = malloc(sizeof a->cells);
+  for (int i = 0; i < CELLS; ++i) {
+    for (int j = 0; j < 4; ++j)
+      cells[i][j] = a->cells[i][j] + 1;
+  }
+  TetcastMeshDesc desc = tetcast_mesh_desc_default();
+  desc.vertices = (TetcastArray){.data = a->points, .type = TETCAST_TYPE_FLOAT64, .count = POINTS};
+  desc.tetrahedra = (TetcastArray){.data = cells, .type = TETCAST_TYPE_INT64, .count = CELLS};
+  desc.ownership = TETCAST_BORROW;
+  desc.index_base = 1;
+  TetcastMesh *mesh, *again;
+  assert_int_equal(tetcast_mesh_create(fixture->context, &desc, &mesh), TETCAST_OK);
+  const char *path = in_folder(fixture, "one.vtu");
+  assert_int_equal(tetcast_dataset_write(fixture->context, path, mesh, 0, NULL, NULL), TETCAST_OK);
+  tetcast_mesh_destroy(&mesh);
+  TetcastDataset *dataset = read_good(fixture, path);
+  assert_int_equal(tetcast_dataset_mesh(dataset, &again), TETCAST_OK);
+  assert_int_equal(tetcast_mesh_index_base(again), 0);
+  assert_memory_equal(tetcast_mesh_tetrahedra(again).data, a->cells, sizeof a->cells);
+  tetcast_mesh_destroy(&again);
+  tetcast_dataset_destroy(&dataset);
+  assert_int_equal(empty_folder(fixture), 1);
+  free(cells);
+  free(a);
+}
+
 /* Appended raw data, zlib. */
 static void test_format(void **state) {
   Fixture *fixture = *state;
@@ -232,7 +262,7 @@ static void test_full_disk(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {TEST(test_round_trip), TEST(test_format), TEST(test_failures),
-                                     TEST(test_full_disk)};
+  const struct CMUnitTest tests[] = {TEST(test_round_trip), TEST(test_counted_from_one), TEST(test_format),
+                                     TEST(test_failures), TEST(test_full_disk)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -93,12 +93,13 @@ template <typename Offsets> static vtkSmartPointer<vtkCellArray> cells_of(vtkDat
 static vtkSmartPointer<vtkCellArray> make_cells(const TetcastMesh *mesh) {
   const TetcastArray tetrahedra = tetcast_mesh_tetrahedra(mesh);
   const int64_t count = tetrahedra.count;
-  if (tetrahedra.type == TETCAST_TYPE_INT32 && count <= INT32_MAX / 4) {
+  const bool as_they_are = tetcast_mesh_index_base(mesh) == 0;
+  if (as_they_are && tetrahedra.type == TETCAST_TYPE_INT32 && count <= INT32_MAX / 4) {
     return cells_of<vtkTypeInt32Array>(wrap(tetrahedra, 4), count);
   }
-  if (tetrahedra.type == TETCAST_TYPE_INT64)
+  if (as_they_are && tetrahedra.type == TETCAST_TYPE_INT64)
     return cells_of<vtkTypeInt64Array>(wrap(tetrahedra, 4), count);
-  vtkNew<vtkTypeInt64Array> indices; // VTK knows no unsigned indices of that kind.
+  vtkNew<vtkTypeInt64Array> indices; // VTK knows no unsigned indices of that kind, and none that count from 1.
   indices->SetNumberOfComponents(4);
   indices->SetNumberOfTuples(count);
   for (int64_t i = 0; i < count; ++i) {
