@@ -8,7 +8,7 @@
 #include "gather/length.h"
 #if !TC_SINGLE
 #include "gather/coefficients.h"
-#include "gather/count.h"
+#include "gather/trace.h"
 #include "gather/value.h"
 #endif
 #if TC_LANES == 1
@@ -21,12 +21,12 @@
 #elif TC_LANES > 1
 #define TC_GATHERERS(GATHERER)                                                                                         \
   GATHERER(emission, TcEmission)                                                                                       \
-  GATHERER(length, TcLength) GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(count, TcCount)
+  GATHERER(length, TcLength) GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(trace, TcTrace)
 #else
 #define TC_GATHERERS(GATHERER)                                                                                         \
   GATHERER(emission, TcEmission)                                                                                       \
   GATHERER(length, TcLength)                                                                                           \
-  GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(count, TcCount) GATHERER(sampled, TcSampled)
+  GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(trace, TcTrace) GATHERER(sampled, TcSampled)
 #endif
 
 enum {

@@ -28,6 +28,7 @@
 #include "volume/coefficients.h"
 #include "walk/lights.h"
 #include "walk/packet.h"
+#include "walk/trail.h"
 
 /* What gatherers are given; each of them uses a part of it. */
 typedef struct TcGatherJob {
@@ -41,6 +42,7 @@ typedef struct TcGatherJob {
   TetcastBlend blend;                 /* which number is made of the values along a ray */
   const TcSurfaces *surfaces;         /* with TC_SURFACES: isosurfaces, slices and the boundary */
   const TcLights *lights;             /* with TC_LIT: the light in the volume */
+  TcTrail *trail;                     /* where cells that are crossed are noted; NULL: nowhere */
   bool to_the_end;                    /* of coefficients: opaque rays go on, as what lies behind is wanted too */
   double rounding;                    /* with TC_BOUND: the rounding of an interpolated value, relative to it */
   int exponent;                       /* the volume's unit of length is 2^exponent of the mesh's */
