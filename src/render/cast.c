@@ -22,7 +22,8 @@ enum {
 typedef struct Caster {
   TcWorker worker;
   TcLine lines[BATCH];
-  double *sums;    /* [BATCH][job.sums] */
+  double *memory;  /* of the next three */
+  double *sums;    /* [BATCH][job.sums]; NULL: not wanted */
   double *depths;  /* [BATCH][depth.sums]; NULL: not wanted */
   double *lengths; /* [BATCH]; NULL: not wanted */
 } Caster;
@@ -32,6 +33,7 @@ typedef struct Casting {
   const TetcastRays *rays;
   const TetcastCastResult *result;
   const TcIsaKernels *kernels;
+  bool gathers;    /* whether what the ray of a pixel gathers is wanted at all */
   TcRender render; /* of which there is no frame */
   /* The walk for the optical depth through a transfer function, in which extinctions are times 2^−thinner: so no depth
    * is so large that it can't be told from the opacity. */
@@ -107,6 +109,7 @@ static TetcastStatus plan(Casting *casting, TetcastIsa isa) {
     return status;
   job->clip = scene->clip;
   job->clip_count = scene->clip_count;
+  casting->gathers = scene->coefficients || result->color || result->error || result->value;
   job->to_the_end = result->optical_depth || result->length || result->group_optical_depth;
   render->bounded = result->error != NULL;
   tc_job_of_scene(scene, render->bounded, job);
@@ -166,14 +169,16 @@ static void store_groups(const TetcastCastResult *result, const TcGathered *gath
 /* Stores the results of a ray, which is number i of its batch. */
 static void store(const Casting *casting, const Caster *caster, const TcGathered *gathered, int i, int64_t ray) {
   const TetcastCastResult *result = casting->result;
-  double rgba[4];
-  const double error = tc_gathered_pixel(gathered, rgba);
-  if (result->color)
-    memcpy(result->color + 4 * ray, rgba, sizeof rgba);
-  if (result->error)
-    result->error[ray] = error;
-  if (result->value)
-    result->value[ray] = channel_of(TETCAST_CHANNEL_VALUE, gathered, 0);
+  if (casting->gathers) {
+    double rgba[4];
+    const double error = tc_gathered_pixel(gathered, rgba);
+    if (result->color)
+      memcpy(result->color + 4 * ray, rgba, sizeof rgba);
+    if (result->error)
+      result->error[ray] = error;
+    if (result->value)
+      result->value[ray] = channel_of(TETCAST_CHANNEL_VALUE, gathered, 0);
+  }
   if (gathered->coefficients) {
     store_groups(result, gathered, ray);
     return;
@@ -212,7 +217,7 @@ static bool cast_batches(void *data, int64_t begin, int64_t end, int worker) {
       return false;
     TcGathered gathered = tc_render_gathered(&casting->render);
     for (int i = 0; i < count; ++i) {
-      gathered.sums = caster->sums + (int64_t)i * job->sums;
+      gathered.sums = caster->memory + (int64_t)i * job->sums;
       store(casting, caster, &gathered, i, casting->first + tc_record_value(records[i]));
     }
   }
@@ -228,10 +233,13 @@ static bool begin_caster(Casting *casting, Caster **out) {
   if (!caster)
     return false;
   const bool begun = tc_worker_begin(context, casting->kernels, &casting->render.job, &caster->worker);
-  caster->sums = tc_allocate(context, BATCH * (int64_t)(sums + depths + lengths), sizeof *caster->sums);
-  caster->depths = caster->sums && depths > 0 ? caster->sums + BATCH * sums : NULL;
-  caster->lengths = caster->sums && lengths > 0 ? caster->sums + BATCH * (sums + depths) : NULL;
-  return begun && caster->sums;
+  caster->memory = tc_allocate(context, BATCH * (int64_t)(sums + depths + lengths), sizeof *caster->memory);
+  if (!caster->memory)
+    return false;
+  caster->sums = casting->gathers ? caster->memory : NULL;
+  caster->depths = depths > 0 ? caster->memory + BATCH * sums : NULL;
+  caster->lengths = lengths > 0 ? caster->memory + BATCH * (sums + depths) : NULL;
+  return begun;
 }
 
 /* Sorts the rays of the slice and casts them. */
@@ -277,7 +285,7 @@ static TetcastStatus end_casters(Casting *casting, int threads, TetcastStatus st
     if (tc_worker_failed(&caster->worker))
       status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: hits of a ray");
     tc_worker_end(context, &caster->worker);
-    tc_release(context, caster->sums);
+    tc_release(context, caster->memory);
     tc_release(context, caster);
   }
   tc_release(context, casting->casters);

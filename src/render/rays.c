@@ -3,6 +3,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 
 #include "base/vec3.h"
 
@@ -22,9 +23,13 @@ static TetcastStatus check_array(TetcastContext *context, const TetcastArray *ar
   return TETCAST_OK;
 }
 
-/* Three numbers of ray i, and what becomes of one that isn't there. */
+/* Three numbers of ray i, and one that may not be there. */
 static void take3(const TetcastArray *array, int64_t i, double v[3]) {
   const int64_t stride = tc_array_stride(array, 3);
+  if (array->type == TETCAST_TYPE_FLOAT64) {
+    memcpy(v, (const char *)array->data + i * stride, 3 * sizeof *v);
+    return;
+  }
   for (int k = 0; k < 3; ++k)
     v[k] = tc_array_double(array, stride, i, k);
 }
@@ -60,16 +65,32 @@ TetcastStatus tc_rays_check(TetcastContext *context, const TetcastRays *rays) {
   return status;
 }
 
+/* 2^exponent, which is at least 2^−1022 and at most 2^1023. */
+static double power_of_two(int exponent) {
+  const uint64_t bits = (uint64_t)(exponent < -1022 ? 1 : exponent > 1023 ? 2046 : exponent + 1023) << 52;
+  double power;
+  memcpy(&power, &bits, sizeof power);
+  return power;
+}
+
+/* As ldexp(), but inline: halves of the exponent, so that neither is too large or too small. */
+static double scaled(double x, int exponent) {
+  return x * power_of_two(exponent / 2) * power_of_two(exponent - exponent / 2);
+}
+
 TcLine tc_rays_line(const TetcastRays *rays, const TetcastVolume *volume, int64_t i, TcRayUnit *unit) {
   TcLine line = {.begin = 0};
   double origin[3], *d = line.direction;
-  int exponent;
+  int exponent = 0;
   take3(&rays->origins, i, origin);
   take3(&rays->directions, i, d);
-  frexp(fmax(fabs(d[0]), fmax(fabs(d[1]), fabs(d[2]))), &exponent);
+  const double square = tc_dot(d, d);
+  if (!(square > 0x1p-900 && square < 0x1p900)) /* else no square overflows, and none that counts underflows */
+    frexp(fmax(fabs(d[0]), fmax(fabs(d[1]), fabs(d[2]))), &exponent);
   for (int k = 0; k < 3; ++k) {
-    line.eye[k] = ldexp(origin[k], -volume->exponent);
-    d[k] = ldexp(d[k], -exponent);
+    line.eye[k] = scaled(origin[k], -volume->exponent);
+    if (exponent)
+      d[k] = ldexp(d[k], -exponent);
   }
   *unit = (TcRayUnit){.length = sqrt(tc_dot(d, d)),
                       .exponent = exponent - volume->exponent,
@@ -77,8 +98,8 @@ TcLine tc_rays_line(const TetcastRays *rays, const TetcastVolume *volume, int64_
                       .end = take1(&rays->ends, i, INFINITY)};
   for (int k = 0; k < 3; ++k)
     d[k] /= unit->length;
-  line.begin = ldexp(unit->begin * unit->length, unit->exponent);
-  line.end = ldexp(unit->end * unit->length, unit->exponent);
+  line.begin = scaled(unit->begin * unit->length, unit->exponent);
+  line.end = scaled(unit->end * unit->length, unit->exponent);
   return line;
 }
 
@@ -88,26 +109,23 @@ double tc_rays_away(const TetcastRays *rays, const TetcastVolume *volume) {
     double away[3];
     take3(&rays->origins, i, away);
     for (int k = 0; k < 3; ++k)
-      away[k] = ldexp(away[k], -volume->exponent) - volume->center[k];
+      away[k] = scaled(away[k], -volume->exponent) - volume->center[k];
     most = fmax(most, tc_dot(away, away));
   }
   return sqrt(most);
 }
 
-/* The place of a number from −1 to 1 among 2^bits; all others count as the nearest of these. */
-static uint32_t place_of(double x, int bits) {
-  const double at = (x + 1) * ldexp(0.5, bits), last = ldexp(1, bits) - 1;
-  return at < last ? (at > 0 ? (uint32_t)at : 0) : (uint32_t)last;
+/* The place of a number from −1 to 1 among 2^7; all others count as the nearest of these. */
+static uint32_t place_of(double x) {
+  const double at = (x + 1) * 64;
+  return at < 127 ? (at > 0 ? (uint32_t)at : 0) : 127;
 }
 
-/* Bit i of the numbers becomes bit 4 i + k of the result. */
-static uint32_t interleave(const uint32_t number[4], int bits) {
-  uint32_t result = 0;
-  for (int i = 0; i < bits; ++i) {
-    for (int k = 0; k < 4; ++k)
-      result |= (number[k] >> i & 1) << (4 * i + k);
-  }
-  return result;
+/* Bit i of a number below 2^7 becomes bit 4 i. */
+static uint32_t spread(uint32_t x) {
+  x = (x | x << 12) & 0x0007000F;
+  x = (x | x << 6) & 0x01030303;
+  return (x | x << 3) & 0x01111111;
 }
 
 /* The main axis comes first, as the rays of a packet must have it in common (walk/place.h), and its sign; then the
@@ -117,9 +135,8 @@ uint32_t tc_rays_key(const TcLine *line, const TetcastVolume *volume) {
   const double *d = line->direction, x = fabs(d[0]), y = fabs(d[1]), z = fabs(d[2]);
   const int kz = z > fmax(x, y) ? 2 : y > x, kx = (kz + 1) % 3, ky = (kz + 2) % 3;
   const double slope_x = d[kx] / d[kz], slope_y = d[ky] / d[kz], depth = volume->center[kz] - line->eye[kz];
-  const uint32_t number[4] = {
-      place_of(slope_x, 7), place_of(slope_y, 7),
-      place_of((line->eye[kx] - volume->center[kx] + line->offset[kx] + depth * slope_x) / volume->radius, 7),
-      place_of((line->eye[ky] - volume->center[ky] + line->offset[ky] + depth * slope_y) / volume->radius, 7)};
-  return (uint32_t)(2 * kz + (d[kz] < 0)) << 28 | interleave(number, 7);
+  const double beside_x = line->eye[kx] - volume->center[kx] + line->offset[kx] + depth * slope_x,
+               beside_y = line->eye[ky] - volume->center[ky] + line->offset[ky] + depth * slope_y;
+  return (uint32_t)(2 * kz + (d[kz] < 0)) << 28 | spread(place_of(slope_x)) | spread(place_of(slope_y)) << 1 |
+         spread(place_of(beside_x / volume->radius)) << 2 | spread(place_of(beside_y / volume->radius)) << 3;
 }

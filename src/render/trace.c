@@ -2,6 +2,7 @@
 /* Finds the cells that any rays cross. Kernels note them step by step (walk/trail.h), lanes side by side; here they are
  * put in order, ray by ray, with the mesh's own numbers of cells and vertices. */
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "base/call.h"
@@ -11,8 +12,8 @@
 #include "render/render.h"
 
 enum {
-  BATCH = 128, /* how many rays are traced together, and handed out */
-  ROUND = 4    /* how many batches each thread traces before they are handed out */
+  BATCH = 256, /* how many rays are traced together, and handed out */
+  ROUND = 2    /* how many batches each thread traces before they are handed out */
 };
 
 /* What of the ray and its crossings in a batch is kept until they have been handed out. */
@@ -22,13 +23,20 @@ typedef struct Batch {
   int64_t capacity;
 } Batch;
 
+/* How to count along a ray, and where its next crossing goes. */
+typedef struct Way {
+  TetcastCrossing *next;
+  double near, scale[2], begin, end;
+} Way;
+
 typedef struct Tracer {
   TcWorker worker;
   TcTrail trail;
   TcLine lines[BATCH];
   TcRayUnit units[BATCH];
-  double cells[BATCH]; /* how many each ray crosses */
-  int64_t next[BATCH]; /* where the next crossing of each ray goes */
+  int64_t order[BATCH]; /* which of the batch each of these rays is */
+  double cells[BATCH];  /* how many each ray crosses */
+  Way ways[BATCH];
 } Tracer;
 
 typedef struct Tracing {
@@ -60,68 +68,88 @@ static void name_vertices(const TetcastVolume *volume, uint32_t cell, const uint
 }
 
 /* The vertices of lane l's cell, those of the face where it was entered first, and their weights where the part of the
- * ray begins and ends. Between the faces weights are linear. */
+ * ray begins and ends. Of the face where the ray leaves, all vertices but one are those of the first, at their places,
+ * as the walk replaces one (walk/packet.h); where cells are found one by one, they may be in any order. */
 static void take_weights(const TetcastVolume *volume, const uint32_t *words, const double *numbers, int lanes, int l,
                          TetcastCrossing *crossing) {
-  uint32_t id[4];
-  double entry[4] = {0}, exit[4] = {0};
+  const bool aligned = volume->traversal == TETCAST_TRAVERSAL_SHELL;
+  uint32_t id[4] = {0};
+  double(*weight)[4] = crossing->weight;
+  memset(weight, 0, sizeof crossing->weight);
   for (int k = 0; k < 3; ++k) {
     id[k] = words[(TC_TRAIL_ENTRY + k) * lanes + l];
-    entry[k] = numbers[(TC_TRAIL_AT_ENTRY + k) * lanes + l];
+    weight[0][k] = numbers[(TC_TRAIL_AT_ENTRY + k) * lanes + l];
   }
-  id[3] = id[0];
   for (int k = 0; k < 3; ++k) {
     const uint32_t vertex = words[(TC_TRAIL_EXIT + k) * lanes + l];
-    int at = 0;
-    while (at < 3 && id[at] != vertex)
-      ++at;
-    id[at] = vertex;
-    exit[at] = numbers[(TC_TRAIL_AT_EXIT + k) * lanes + l];
+    const double at_exit = numbers[(TC_TRAIL_AT_EXIT + k) * lanes + l];
+    int at = k;
+    for (int j = 0; !aligned && j < 3; ++j)
+      at = vertex == id[j] ? j : at;
+    const bool kept = vertex == id[at];
+    weight[1][at] = kept ? at_exit : weight[1][at];
+    weight[1][3] = kept ? weight[1][3] : at_exit;
+    id[3] = kept ? id[3] : vertex;
   }
   const double from = numbers[TC_TRAIL_FROM * lanes + l], to = numbers[TC_TRAIL_TO * lanes + l];
-  for (int k = 0; k < 4; ++k) {
-    crossing->weight[0][k] = from > 0 ? entry[k] + from * (exit[k] - entry[k]) : entry[k];
-    crossing->weight[1][k] = to < 1 ? entry[k] + to * (exit[k] - entry[k]) : exit[k];
+  for (int k = 0; (from > 0 || to < 1) && k < 4; ++k) { /* between the faces weights are linear */
+    const double entry = weight[0][k], change = weight[1][k] - entry;
+    weight[0][k] = entry + from * change;
+    weight[1][k] = to < 1 ? entry + to * change : weight[1][k];
   }
   name_vertices(volume, crossing->cell, id, crossing->vertex);
 }
 
-/* The t of the ray at a depth, which is counted from the point that is nearest to the volume's centre. */
-static double place_on(const TcRayUnit *unit, double near, double depth) {
-  const double t = ldexp((near + depth) / unit->length, -unit->exponent);
-  return t < unit->begin ? unit->begin : t > unit->end ? unit->end : t;
+/* What is needed to count along each ray: its number is the depth, plus `near`, times both scales. */
+static void find_ways(const Tracing *tracing, Tracer *tracer, const Batch *batch) {
+  const TetcastVolume *volume = tracing->volume;
+  for (int64_t i = 0; i < batch->count; ++i) {
+    const TcLine *line = &tracer->lines[i];
+    const TcRayUnit *unit = &tracer->units[i];
+    const int half = -unit->exponent / 2;
+    Way way = {.next = batch->crossings + batch->offsets[tracer->order[i]],
+               .scale = {ldexp(1 / unit->length, half), ldexp(1, -unit->exponent - half)},
+               .begin = unit->begin,
+               .end = unit->end};
+    for (int k = 0; k < 3; ++k) /* as in walk/place.h */
+      way.near -= ((line->eye[k] - volume->center[k]) + line->offset[k]) * line->direction[k];
+    tracer->ways[i] = way;
+  }
+}
+
+static double number_at(const Way *way, double depth) {
+  const double t = (way->near + depth) * way->scale[0] * way->scale[1];
+  return t < way->begin ? way->begin : t > way->end ? way->end : t;
 }
 
 /* Puts what the trail has in order. */
 static void sort_trail(const Tracing *tracing, Tracer *tracer, const Batch *batch) {
   const TetcastVolume *volume = tracing->volume;
   const TcTrail *trail = &tracer->trail;
-  const int lanes = tracing->kernels->lanes;
+  const int lanes = tracing->kernels->lanes, half = volume->exponent / 2;
   const int64_t size = tc_trail_size(trail, lanes);
-  double near[BATCH];
-  for (int64_t i = 0; i < batch->count; ++i) {
-    const TcLine *line = &tracer->lines[i];
-    near[i] = 0;
-    for (int k = 0; k < 3; ++k)
-      near[i] -= ((line->eye[k] - volume->center[k]) + line->offset[k]) * line->direction[k];
-    tracer->next[i] = batch->offsets[i];
-  }
+  const double scale[2] = {ldexp(1, half), ldexp(1, volume->exponent - half)};
+  find_ways(tracing, tracer, batch);
   for (int64_t step = 0; step < trail->count; step += size) {
     const uint32_t *words = (const uint32_t *)(const void *)(trail->data + step);
     const double *numbers = trail->data + step + tc_trail_before_numbers(trail, lanes);
     for (int l = 0; l < lanes; ++l) {
-      const uint32_t ray = words[TC_TRAIL_RAY * lanes + l];
+      const uint32_t ray = words[TC_TRAIL_RAY * lanes + l], cell = words[TC_TRAIL_CELL * lanes + l];
       if (ray == UINT32_MAX)
         continue;
-      const uint32_t cell = words[TC_TRAIL_CELL * lanes + l];
+      Way *way = &tracer->ways[ray];
       const double begin = numbers[TC_TRAIL_BEGIN * lanes + l], end = numbers[TC_TRAIL_END * lanes + l];
-      TetcastCrossing *crossing = &batch->crossings[tracer->next[ray]++];
-      *crossing = (TetcastCrossing){.cell = cell,
-                                    .begin = place_on(&tracer->units[ray], near[ray], begin),
-                                    .end = place_on(&tracer->units[ray], near[ray], end),
-                                    .length = ldexp(end - begin, volume->exponent)};
-      if (trail->weights)
+      TetcastCrossing *crossing = way->next++;
+      memset(crossing, 0, offsetof(TetcastCrossing, begin)); /* with what lies between the members */
+      crossing->cell = cell;
+      crossing->begin = number_at(way, begin);
+      crossing->end = number_at(way, end);
+      crossing->length = (end - begin) * scale[0] * scale[1];
+      if (trail->weights) {
         take_weights(volume, words, numbers, lanes, l, crossing);
+      } else {
+        memset(crossing->weight, 0, sizeof crossing->weight);
+      }
       crossing->cell = volume->adjacency.source[cell];
     }
   }
@@ -141,9 +169,31 @@ static bool reserve(const Tracing *tracing, Batch *batch, int64_t count) {
   return batch->crossings != NULL;
 }
 
+/* Takes the rays of a batch, those along the same axis next to each other, as the rays of a packet must have it in
+ * common (walk/place.h). */
+static void take_rays(const Tracing *tracing, Tracer *tracer, const Batch *batch) {
+  enum { KINDS = 8, KIND_BITS = 28 };
+  TcLine lines[BATCH];
+  TcRayUnit units[BATCH];
+  int64_t next[KINDS + 1] = {0};
+  uint32_t kind[BATCH];
+  for (int64_t i = 0; i < batch->count; ++i) {
+    lines[i] = tc_rays_line(tracing->rays, tracing->volume, batch->first + i, &units[i]);
+    kind[i] = tc_rays_key(&lines[i], tracing->volume) >> KIND_BITS;
+    ++next[kind[i] + 1];
+  }
+  for (int k = 0; k < KINDS; ++k)
+    next[k + 1] += next[k];
+  for (int64_t i = 0; i < batch->count; ++i) {
+    const int64_t at = next[kind[i]]++;
+    tracer->lines[at] = lines[i];
+    tracer->units[at] = units[i];
+    tracer->order[at] = i;
+  }
+}
+
 static bool trace_batch(const Tracing *tracing, Tracer *tracer, Batch *batch) {
-  for (int64_t i = 0; i < batch->count; ++i)
-    tracer->lines[i] = tc_rays_line(tracing->rays, tracing->volume, batch->first + i, &tracer->units[i]);
+  take_rays(tracing, tracer, batch);
   memset(tracer->cells, 0, sizeof tracer->cells);
   tracer->trail.count = 0;
   if (!tracing->kernels->cast(&tracing->job, tracer->lines, batch->count, &tracer->worker, tracer->cells) ||
@@ -151,7 +201,9 @@ static bool trace_batch(const Tracing *tracing, Tracer *tracer, Batch *batch) {
     return false;
   batch->offsets[0] = 0;
   for (int64_t i = 0; i < batch->count; ++i)
-    batch->offsets[i + 1] = batch->offsets[i] + (int64_t)tracer->cells[i];
+    batch->offsets[tracer->order[i] + 1] = (int64_t)tracer->cells[i];
+  for (int64_t i = 0; i < batch->count; ++i)
+    batch->offsets[i + 1] += batch->offsets[i];
   if (!reserve(tracing, batch, batch->offsets[batch->count]))
     return false;
   sort_trail(tracing, tracer, batch);

@@ -45,6 +45,9 @@ void job_memory_vtk(const Job *job);
 void job_visible(const Job *job);
 void job_features(const Job *job);
 
+/* Any rays beside a frame, and the cells that they cross. */
+void job_rays(const Job *job);
+
 /* Writes the mesh as .vtu; reads it; renders it with the command. */
 void job_file(const Job *job);
 
