@@ -15,6 +15,7 @@ enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_USAGE = 2 }; /* exit codes; 128 + signa
 /* The commands: argv[0] is the command's name, getopt's global state is fresh; they return the exit code. */
 int tetcast_cli_render(int argc, char **argv);
 int tetcast_cli_converge(int argc, char **argv);
+int tetcast_cli_cast(int argc, char **argv);
 int tetcast_cli_info(int argc, char **argv);
 int tetcast_cli_mesh(int argc, char **argv);
 int tetcast_cli_completion(int argc, char **argv);

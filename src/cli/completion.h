@@ -23,6 +23,7 @@ enum { COMPLETION_OPTIONS = 64 /* of a command, at most */, COMPLETION_WORDS = 6
 /* The options of each command; how many there are. */
 int completion_of_render(CompletionOption list[COMPLETION_OPTIONS]);
 int completion_of_converge(CompletionOption list[COMPLETION_OPTIONS]);
+int completion_of_cast(CompletionOption list[COMPLETION_OPTIONS]);
 int completion_of_info(CompletionOption list[COMPLETION_OPTIONS]);
 int completion_of_mesh(CompletionOption list[COMPLETION_OPTIONS]);
 

@@ -23,6 +23,10 @@
   (BIT(OPTION_ARRAY) | BIT(OPTION_TRANSFER) | BIT(OPTION_PRESET) | BIT(OPTION_RANGE) | BIT(OPTION_OPACITY_MODEL) |     \
    BIT(OPTION_BLEND) | BIT(OPTION_ISOSURFACE) | BIT(OPTION_SLICE) | BIT(OPTION_SURFACE) | BIT(OPTION_EDGES))
 
+/* What is about pictures alone, and what all commands have but converge. */
+#define PICTURES (COMMAND_RENDER | COMMAND_CONVERGE)
+#define EXACTLY  (COMMAND_RENDER | COMMAND_CAST)
+
 /* Order of the library's enumerations. */
 static const char *const opacity_models[] = {"unit-distance", "vtk-unstructured", "ospray", NULL};
 static const char *const blends[] = {"composite", "maximum", "minimum", "average", "additive", NULL};
@@ -30,6 +34,7 @@ static const char *const shades[] = {"none", "surfaces", "volume", "all", NULL};
 static const char *const normals[] = {"smooth", "flat", NULL};
 static const char *const isas[] = {"auto", "scalar", "avx2", "avx512", NULL};
 static const char *const traversals[] = {"shell", "faces", NULL};
+static const char *const bases[] = {"cells", "points", NULL}; /* of Basis */
 static const char *const pixel_types[] = {"", "uint8", "uint16", "half", "float", "double", NULL};
 
 const RenderRow render_table[OPTION_COUNT] = {
@@ -56,11 +61,11 @@ const RenderRow render_table[OPTION_COUNT] = {
          .form = "expected two numbers, LO not above HI, or shares of the volume as 1%,99%, or step, or series"},
     [OPTION_OPACITY_MODEL] = {"opacity-model", KIND_CHOICE, AT(opacity_model), .names = opacity_models,
                               .excludes = DIRECT, .form = "expected unit-distance, vtk-unstructured or ospray"},
-    [OPTION_EXTINCTION] = {"extinction", KIND_TEXT, AT(extinction), .excludes = TRANSFER, .only = COMMAND_RENDER,
+    [OPTION_EXTINCTION] = {"extinction", KIND_TEXT, AT(extinction), .excludes = TRANSFER, .only = EXACTLY,
                            .form = "expected NAME, NAME:component or NAME:mag"},
-    [OPTION_EMISSION] = {"emission", KIND_TEXT, AT(emission), .excludes = TRANSFER, .only = COMMAND_RENDER,
+    [OPTION_EMISSION] = {"emission", KIND_TEXT, AT(emission), .excludes = TRANSFER, .only = EXACTLY,
                          .form = "expected NAME, NAME:component or NAME:mag"},
-    [OPTION_GROUPS] = {"groups", KIND_FLAG, AT(groups), .excludes = TRANSFER, .only = COMMAND_RENDER,
+    [OPTION_GROUPS] = {"groups", KIND_FLAG, AT(groups), .excludes = TRANSFER, .only = EXACTLY,
                        .form = "expected true or false"},
     [OPTION_BLEND] = {"blend", KIND_CHOICE, AT(blend), .names = blends, .excludes = DIRECT,
                       .form = "expected composite, maximum, minimum, average or additive"},
@@ -91,16 +96,17 @@ const RenderRow render_table[OPTION_COUNT] = {
     [OPTION_CLIP_BOX] = {"clip-box", KIND_NUMBERS, AT(clip_box), 6, 6, -DBL_MAX, DBL_MAX,
                          .form = "expected six numbers x0,x1,y0,y1,z0,z1, the first of each pair not above the second"},
     [OPTION_STOP_DEPTH] = {"stop-depth", KIND_PATH, AT(stop_depth), .only = COMMAND_RENDER, .form = "expected a path"},
-    [OPTION_EYE] = {"eye", KIND_NUMBERS, AT(eye), 3, 3, -DBL_MAX, DBL_MAX, .form = "expected three numbers x,y,z"},
-    [OPTION_TARGET] = {"target", KIND_NUMBERS, AT(target), 3, 3, -DBL_MAX, DBL_MAX,
+    [OPTION_EYE] = {"eye", KIND_NUMBERS, AT(eye), 3, 3, -DBL_MAX, DBL_MAX, .only = PICTURES,
+                    .form = "expected three numbers x,y,z"},
+    [OPTION_TARGET] = {"target", KIND_NUMBERS, AT(target), 3, 3, -DBL_MAX, DBL_MAX, .only = PICTURES,
                        .form = "expected three numbers x,y,z"},
-    [OPTION_UP] = {"up", KIND_NUMBERS, AT(up), 3, 3, -DBL_MAX, DBL_MAX,
+    [OPTION_UP] = {"up", KIND_NUMBERS, AT(up), 3, 3, -DBL_MAX, DBL_MAX, .only = PICTURES,
                    .form = "expected three numbers x,y,z, not all zero"},
     [OPTION_FOVY] = {"fovy", KIND_NUMBERS, AT(fovy), 1, 1, 1e-6, 179.999999, .excludes = BIT(OPTION_ORTHO),
-                     .form = "expected an angle between 0 and 180 degrees"},
+                     .only = PICTURES, .form = "expected an angle between 0 and 180 degrees"},
     [OPTION_ORTHO] = {"ortho", KIND_NUMBERS, AT(ortho), 1, 1, DBL_MIN, DBL_MAX, .excludes = BIT(OPTION_FOVY),
-                      .form = "expected a height above 0"},
-    [OPTION_SIZE] = {"size", KIND_INTEGERS, AT(size), 2, 2, 1, 1 << 20,
+                      .only = PICTURES, .form = "expected a height above 0"},
+    [OPTION_SIZE] = {"size", KIND_INTEGERS, AT(size), 2, 2, 1, 1 << 20, .only = PICTURES,
                      .form = "expected WxH: whole numbers from 1 to 1048576, no more than 2^30 pixels"},
     [OPTION_SAMPLES] = {"samples", KIND_INTEGERS, AT(samples), 1, 1, 1, 65536, .excludes = BIT(OPTION_ADAPTIVE),
                         .only = COMMAND_RENDER, .form = "expected a whole number from 1 to 65536"},
@@ -116,7 +122,7 @@ const RenderRow render_table[OPTION_COUNT] = {
          .form = "expected exact, midpoint:N, trapezoid:N, gauss:N (N to 16) or table:N (N from 2 to 4096)"},
     [OPTION_TOLERANCE] = {"tolerance", KIND_NUMBERS, AT(tolerance), 1, 1, 0, DBL_MAX, .only = COMMAND_RENDER,
                           .form = "expected a number, 0 or above"},
-    [OPTION_CHANNELS] = {"channels", KIND_TEXT, AT(channels), .only = COMMAND_RENDER,
+    [OPTION_CHANNELS] = {"channels", KIND_TEXT, AT(channels), .only = EXACTLY,
                          .form = "expected error, or depth, normal, or value, or of radiance, optical_depth, "
                                  "transmittance, path_length some; "
                                  "and cells"},
@@ -127,7 +133,7 @@ const RenderRow render_table[OPTION_COUNT] = {
     [OPTION_ISA] = {"isa", KIND_CHOICE, AT(isa), .names = isas, .form = "expected auto, scalar, avx2 or avx512"},
     [OPTION_THREADS] = {"threads", KIND_INTEGERS, AT(threads), 1, 1, 0, 4096,
                         .form = "expected a whole number from 0 (all) to 4096"},
-    [OPTION_REPEAT] = {"repeat", KIND_INTEGERS, AT(repeat), 1, 1, 1, 1e6,
+    [OPTION_REPEAT] = {"repeat", KIND_INTEGERS, AT(repeat), 1, 1, 1, 1e6, .only = PICTURES,
                        .form = "expected a whole number from 1 to 1000000"},
     [OPTION_PIXEL_TYPE] = {"pixel-type", KIND_CHOICE, AT(pixel_type), .names = pixel_types, .only = COMMAND_RENDER,
                            .form = "expected uint8, uint16, half, float or double"},
@@ -139,10 +145,14 @@ const RenderRow render_table[OPTION_COUNT] = {
     [OPTION_QUIET] = {"quiet", KIND_FLAG, AT(quiet), .form = "expected true or false"},
     [OPTION_REFINE] = {"refine", KIND_FLAG, AT(refine), .only = COMMAND_CONVERGE},
     [OPTION_NO_PLOTS] = {"no-plots", KIND_FLAG, AT(no_plots), .only = COMMAND_CONVERGE},
+    [OPTION_RAYS] = {"rays", KIND_PATH, AT(rays), .only = COMMAND_CAST, .form = "expected a path"},
+    [OPTION_MATRIX] = {"matrix", KIND_PATH, AT(matrix), .only = COMMAND_CAST, .form = "expected a path"},
+    [OPTION_BASIS] = {"basis", KIND_CHOICE, AT(basis), .names = bases, .only = COMMAND_CAST,
+                      .form = "expected cells or points"},
 };
 
-bool render_option_of_command(OptionId id, RenderCommand command) {
-  return !render_table[id].only || render_table[id].only == command;
+bool render_option_of_command(OptionId id, unsigned commands) {
+  return !render_table[id].only || render_table[id].only & commands;
 }
 
 RenderOptions render_options_default(RenderCommand command) {
@@ -315,6 +325,22 @@ int render_option_channel_list(const char *text, TetcastChannel channels[32]) {
   }
 }
 
+bool render_option_ray_channels(const char *text, bool *length, bool *error) {
+  *length = *error = false;
+  for (;;) {
+    const size_t size = strcspn(text, ",");
+    bool *named = size == 6 && !strncmp(text, "length", size)  ? length
+                  : size == 5 && !strncmp(text, "error", size) ? error
+                                                               : NULL;
+    if (!named || *named)
+      return false;
+    *named = true;
+    if (!text[size])
+      return true;
+    text += size + 1;
+  }
+}
+
 uint32_t render_option_channels(const char *text) {
   TetcastChannel list[32];
   uint32_t channels = 0;
@@ -339,6 +365,11 @@ bool render_options_groups(const RenderOptions *options) {
 }
 
 uint32_t render_options_channels(const RenderOptions *options) {
+  bool length, error;
+  if (options->command == COMMAND_CAST)
+    return options->channels && render_option_ray_channels(options->channels, &length, &error) && error
+               ? TETCAST_CHANNEL_ERROR
+               : 0;
   if (options->channels)
     return render_option_channels(options->channels);
   if (!render_options_groups(options))
@@ -525,7 +556,9 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
     const char *reason = id == OPTION_PRESET ? set_preset_name(value->text) : NULL;
     if (id == OPTION_INTEGRATOR && !render_option_integrator(value->text, &integrator, &n))
       reason = render_table[id].form;
-    if (id == OPTION_CHANNELS && !render_option_channels(value->text))
+    bool length, error;
+    if (id == OPTION_CHANNELS && !render_option_channels(value->text) &&
+        !(options->command == COMMAND_CAST && render_option_ray_channels(value->text, &length, &error)))
       reason = render_table[id].form;
     if (id == OPTION_TIME && !render_option_dataset(NULL, value->text, -1, &(TetcastDatasetDesc){0}))
       reason = render_table[id].form;

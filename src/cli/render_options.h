@@ -71,10 +71,14 @@ typedef enum OptionId {
   OPTION_QUIET,
   OPTION_REFINE,
   OPTION_NO_PLOTS,
+  OPTION_RAYS,
+  OPTION_MATRIX,
+  OPTION_BASIS,
   OPTION_COUNT
 } OptionId;
 
-typedef enum RenderCommand { COMMAND_RENDER = 1, COMMAND_CONVERGE = 2 } RenderCommand;
+/* Bits of a set. */
+typedef enum RenderCommand { COMMAND_RENDER = 1, COMMAND_CONVERGE = 2, COMMAND_CAST = 4 } RenderCommand;
 
 /* The kinds of range that --range can name. */
 typedef enum RangeKind { RANGE_DEFAULT, RANGE_FIXED, RANGE_QUANTILES, RANGE_STEP, RANGE_SERIES } RangeKind;
@@ -89,7 +93,7 @@ typedef struct RenderOptions {
   RenderCommand command;
   /* NULL unless given */
   char *input, *output, *array, *block, *time, *transfer, *preset, *extinction, *emission, *integrator, *channels,
-      *surface, *edges, *outline, *deep, *stats, *scene, *save_scene, *stop_depth;
+      *surface, *edges, *outline, *deep, *stats, *scene, *save_scene, *stop_depth, *rays, *matrix;
   char **inputs; /* [input_count] of several files, the steps of a series; input is the first. NULL: one file */
   int input_count;
   json_t *transfer_object; /* of a scene file; instead of transfer */
@@ -103,6 +107,7 @@ typedef struct RenderOptions {
   RangeKind range_kind;   /* RANGE_FIXED: options->range; RANGE_QUANTILES: these shares of the volume */
   double subdivide, ambient_occlusion;
   int opacity_model, blend, shade, normals, traversal, isa, pixel_type; /* values of the library's enumerations */
+  int basis;                                                            /* a Basis */
   int cell_to_point, no_displacement, quiet, strict, resume, refine, no_plots, groups, shadows;
   uint64_t given;  /* bit 1 << OptionId: has a value from command line or scene file */
   uint64_t source; /* the same for the source being read alone */
@@ -196,6 +201,9 @@ uint32_t render_option_channels(const char *text);
 /* The same one by one, in the order of the list; returns how many there are. */
 int render_option_channel_list(const char *text, TetcastChannel channels[32]);
 
+/* What --channels of rays names: "length", "error" or both. False: anything else. */
+bool render_option_ray_channels(const char *text, bool *length, bool *error);
+
 /* Those of the frame; --groups alone means the radiance, or the transmittance when nothing is emitted. */
 uint32_t render_options_channels(const RenderOptions *options);
 
@@ -237,13 +245,14 @@ typedef struct RenderRow {
   double low, high;         /* bounds of each */
   const char *const *names; /* of a choice */
   uint64_t excludes;
-  RenderCommand only; /* of this command alone, 0: of both */
-  const char *form;   /* what is expected */
+  unsigned only;    /* of these commands alone, RenderCommand, 0: of all */
+  const char *form; /* what is expected */
 } RenderRow;
 
 extern const RenderRow render_table[OPTION_COUNT];
 
-bool render_option_of_command(OptionId id, RenderCommand command);
+/* Whether it is of any of these commands. */
+bool render_option_of_command(OptionId id, unsigned commands);
 
 /* What the name of a picture ends with. */
 bool render_option_has_extension(const char *path, const char *extension);

@@ -195,7 +195,7 @@ void cut_all(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, 
     desc.rational = numbers_of(weights, &rational);
   }
   desc.subdivision = options.subdivision;
-  desc.sources = grid->GetCellData()->GetNumberOfArrays() > 0;
+  desc.sources = options.sources || grid->GetCellData()->GetNumberOfArrays() > 0;
 
   // The library's words shall begin with the file's name: a context of our own catches them.
   std::string words;
