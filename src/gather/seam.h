@@ -16,7 +16,7 @@
  * - end(on, job, state, ending, sums): hands out what has been gathered, TcGatherJob.sums numbers for each lane. With
  *   TC_BOUND the last of them is a bound on the error of the others.
  *
- * A new gatherer is a file like length.h, a line in gather.h and a row in kernels.def. */
+ * A new gatherer is a file like count.h, a line in gather.h and a row in kernels.def. */
 #ifndef TC_GATHER_SEAM_H
 #define TC_GATHER_SEAM_H
 

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Gathers how many cells rays cross over a length above 0, and notes these cells if the worker has a trail. */
+/* Gathers the length of rays in cells and, as a second sum, if it is wanted, how many cells they cross over a length
+ * above 0; and notes these cells if the worker has a trail. */
 #ifndef TC_GATHER_TRACE_H
 #define TC_GATHER_TRACE_H
 
-#include "gather/seam.h"
+#include "gather/length.h"
 #include "walk/trail.h"
 
 typedef struct TcTrace {
+  TcLength length;
   TcVec cells;
   /* With a trail: the vertices of the faces where the lanes have entered their cells, and their weights there. */
   TcWord id[3];
@@ -14,7 +16,7 @@ typedef struct TcTrace {
 } TcTrace;
 
 TC_INLINE void tc_trace_begin(const TcGatherJob *job, TcTrace *trace) {
-  (void)job;
+  tc_length_begin(job, &trace->length);
   trace->cells = tc_set(0);
 }
 
@@ -61,7 +63,7 @@ TC_NOINLINE void tc_trace_note(TcTrail *trail, TcTrace *trace, TcMask mask, cons
 
 TC_INLINE void tc_trace_segment(const unsigned on, const TcGatherJob *job, TcTrace *trace, TcMask mask,
                                 const TcPassage *passage) {
-  (void)on;
+  tc_length_segment(on, job, &trace->length, mask, passage);
   trace->cells += tc_select(mask, tc_set(1), tc_set(0));
   if (job->trail)
     tc_trace_note(job->trail, trace, mask, passage);
@@ -69,8 +71,10 @@ TC_INLINE void tc_trace_segment(const unsigned on, const TcGatherJob *job, TcTra
 
 TC_INLINE void tc_trace_end(const unsigned on, const TcGatherJob *job, TcTrace *trace, const TcEnding *ending,
                             double (*sums)[TC_LANES]) {
-  (void)on, (void)job, (void)ending;
-  TC_EACH_LANE sums[0][l] = (double)TC_AT(trace->cells, l);
+  (void)on, (void)ending;
+  TC_EACH_LANE sums[0][l] = (double)TC_AT(trace->length.sum, l);
+  for (int l = 0; job->sums > 1 && l < TC_LANES; ++l)
+    sums[1][l] = (double)TC_AT(trace->cells, l);
 }
 
 #define tc_trace_complete(on, job, trace, active, steps) tc_none()

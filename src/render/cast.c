@@ -85,7 +85,7 @@ static TetcastStatus plan_more(Casting *casting) {
                         &casting->depth);
   }
   if (casting->result->length) {
-    casting->length = (TcJob){.kernel = TC_KERNEL_length,
+    casting->length = (TcJob){.kernel = TC_KERNEL_trace,
                               .shell = &scene->volume->shell,
                               .sums = 1,
                               .clip = scene->clip,

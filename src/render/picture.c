@@ -349,7 +349,7 @@ static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *de
 static void plan_count(TcRender *render) {
   TcJob *count = &render->count;
   *count = render->job.precise ? render->precise : render->job; /* it takes double precision */
-  count->kernel = TC_KERNEL_trace;
+  count->kernel = TC_KERNEL_count;
   count->shell = &render->scene->volume->shell;
   count->pieces = NULL;
   count->coefficients = NULL;

@@ -12,6 +12,8 @@
 #include "render/render.h"
 
 enum {
+  CELLS = 1, /* which of the sums is the number of cells */
+  SUMS,
   BATCH = 256, /* how many rays are traced together, and handed out */
   ROUND = 2    /* how many batches each thread traces before they are handed out */
 };
@@ -34,8 +36,8 @@ typedef struct Tracer {
   TcTrail trail;
   TcLine lines[BATCH];
   TcRayUnit units[BATCH];
-  int64_t order[BATCH]; /* which of the batch each of these rays is */
-  double cells[BATCH];  /* how many each ray crosses */
+  int64_t order[BATCH];     /* which of the batch each of these rays is */
+  double sums[BATCH][SUMS]; /* what each ray gathers: its length, and how many cells it crosses */
   Way ways[BATCH];
 } Tracer;
 
@@ -194,14 +196,14 @@ static void take_rays(const Tracing *tracing, Tracer *tracer, const Batch *batch
 
 static bool trace_batch(const Tracing *tracing, Tracer *tracer, Batch *batch) {
   take_rays(tracing, tracer, batch);
-  memset(tracer->cells, 0, sizeof tracer->cells);
+  memset(tracer->sums, 0, sizeof tracer->sums);
   tracer->trail.count = 0;
-  if (!tracing->kernels->cast(&tracing->job, tracer->lines, batch->count, &tracer->worker, tracer->cells) ||
+  if (!tracing->kernels->cast(&tracing->job, tracer->lines, batch->count, &tracer->worker, tracer->sums[0]) ||
       tracer->trail.out_of_memory)
     return false;
   batch->offsets[0] = 0;
   for (int64_t i = 0; i < batch->count; ++i)
-    batch->offsets[tracer->order[i] + 1] = (int64_t)tracer->cells[i];
+    batch->offsets[tracer->order[i] + 1] = (int64_t)tracer->sums[i][CELLS];
   for (int64_t i = 0; i < batch->count; ++i)
     batch->offsets[i + 1] += batch->offsets[i];
   if (!reserve(tracing, batch, batch->offsets[batch->count]))
@@ -290,7 +292,7 @@ TetcastStatus tc_volume_trace(const TetcastVolume *volume, const TetcastRays *ra
                      .user = user,
                      .kernels =
                          tc_kernels_for(volume->traversal == TETCAST_TRAVERSAL_FACES ? TETCAST_ISA_SCALAR : desc->isa),
-                     .job = {.kernel = TC_KERNEL_trace, .shell = &volume->shell, .sums = 1}};
+                     .job = {.kernel = TC_KERNEL_trace, .shell = &volume->shell, .sums = SUMS}};
   bool ok = tc_allocate_array(context, (void **)&tracing.tracers, threads, sizeof(Tracer *), "workers");
   if (ok)
     memset(tracing.tracers, 0, (size_t)threads * sizeof(Tracer *));

@@ -91,12 +91,12 @@ void job_rays(const Job *job) {
       {.name = "frame"},
       {.name = "the frame's rays"},
       {.name = "random rays", .random = true},
-      {.name = "the frame's rays, length alone", .length = true},
-      {.name = "the frame's rays, cells traced", .trace = true},
-      {.name = "the frame's rays, cells and weights traced", .trace = true, .weights = true},
-      {.name = "random rays, length alone", .random = true, .length = true},
-      {.name = "random rays, cells traced", .random = true, .trace = true},
-      {.name = "random rays, cells and weights traced", .random = true, .trace = true, .weights = true}};
+      {.name = "the length of the frame's rays", .length = true},
+      {.name = "the cells of the frame's rays", .trace = true},
+      {.name = "the cells and weights of the frame's rays", .trace = true, .weights = true},
+      {.name = "the length of random rays", .random = true, .length = true},
+      {.name = "the cells of random rays", .random = true, .trace = true},
+      {.name = "the cells and weights of random rays", .random = true, .trace = true, .weights = true}};
   enum { COUNT = sizeof measures / sizeof *measures };
   const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
   const int pixels = job->options->pixels, count = pixels * pixels;
