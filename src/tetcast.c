@@ -9,6 +9,8 @@
 #include "mesh/cut.h"
 #include "mesh/mesh.h"
 #include "optics/transfer.h"
+#include "render/cast.h"
+#include "render/rays.h"
 #include "render/render.h"
 
 /* ── version, status ── */
@@ -372,6 +374,42 @@ void tetcast_volume_destroy(TetcastVolume **volume) {
 
 void tetcast_volume_info(const TetcastVolume *volume, TetcastVolumeInfo *info) {
   tc_volume_info(volume, info);
+}
+
+TetcastTraceDesc tetcast_trace_desc_default(void) {
+  return (TetcastTraceDesc){.cookie = TC_COOKIE, .weights = 1};
+}
+
+typedef struct VolumeTrace {
+  const TetcastVolume *volume;
+  const TetcastRays *rays;
+  TetcastTraceDesc desc;
+  TetcastTraceFunction *function;
+  void *user;
+} VolumeTrace;
+
+static TetcastStatus volume_trace(void *data) {
+  const VolumeTrace *call = data;
+  return tc_volume_trace(call->volume, call->rays, &call->desc, call->function, call->user);
+}
+
+TetcastStatus tetcast_volume_trace(const TetcastVolume *volume, const TetcastRays *rays, const TetcastTraceDesc *desc,
+                                   TetcastTraceFunction *function, void *user) {
+  TC_ENTRY;
+  const TetcastTraceDesc defaults = tetcast_trace_desc_default();
+  if (!desc)
+    desc = &defaults;
+  if (!volume)
+    return TETCAST_ERROR_ARGUMENT;
+  TetcastContext *context = volume->context;
+  CHECK_DESC(context, rays);
+  CHECK_DESC(context, desc);
+  CHECK_GIVEN(context, function);
+  if ((unsigned)desc->isa > TETCAST_ISA_AVX512)
+    return ARGUMENT(context, "unknown instruction set %d", (int)desc->isa);
+  const TetcastStatus status = tc_rays_check(context, rays);
+  VolumeTrace call = {volume, rays, *desc, function, user};
+  return status ? status : tc_call(volume_trace, &call, &call.desc.progress);
 }
 
 /* ── transfer function ── */

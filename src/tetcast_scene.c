@@ -7,7 +7,9 @@
 #include "base/boundary.h"
 #include "mesh/mesh.h"
 #include "optics/transfer.h"
+#include "render/cast.h"
 #include "render/outline.h"
+#include "render/rays.h"
 #include "render/render.h"
 
 TetcastStatus tetcast_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **scene) {
@@ -373,11 +375,10 @@ static TetcastStatus check_camera(TetcastContext *context, const TetcastCamera *
   return TETCAST_OK;
 }
 
-/* Whether the scene is complete, and is one that fills the frame's channels. */
-static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderDesc *desc, const TetcastFrame *frame) {
+/* Whether the scene is one that fills the frame's channels. */
+static TetcastStatus check_channels(const TetcastScene *scene, bool exact, const TetcastFrame *frame) {
   TetcastContext *context = scene->context;
-  const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT,
-             error = tc_frame_channel(frame, TETCAST_CHANNEL_ERROR) != NULL;
+  const bool error = tc_frame_channel(frame, TETCAST_CHANNEL_ERROR) != NULL;
   const TcCoefficients *c = scene->coefficients;
   for (int i = 0; i < TC_CHANNELS; ++i) {
     const TetcastChannelInfo *info = &tc_channels[i].info;
@@ -398,6 +399,14 @@ static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderD
       return ARGUMENT(context, "a frame of %d groups, but the scene has %d", frame->groups, c->groups);
     }
   }
+  return TETCAST_OK;
+}
+
+/* Whether the scene is complete, and can be seen by the exact integrator or another one, with this tolerance, with a
+ * bound on the error or without. */
+static TetcastStatus check_scene(const TetcastScene *scene, bool exact, double tolerance, bool error) {
+  TetcastContext *context = scene->context;
+  const TcCoefficients *c = scene->coefficients;
   if (c && scene->blend)
     return ARGUMENT(context, "with coefficients there is only the blend mode composite");
   if (scene->blend && !exact)
@@ -445,7 +454,7 @@ static TetcastStatus check_scene(const TetcastScene *scene, const TetcastRenderD
   const bool colored = scene->isosurface_count > 0 && scene->slice_count == 0 && !(scene->boundary.opacity > 0);
   if (!c && !scene->transfer && !colored)
     return ARGUMENT(context, "the scene has no transfer function yet");
-  if (!exact && (desc->tolerance > 0 || error)) {
+  if (!exact && (tolerance > 0 || error)) {
     return ARGUMENT(context, "only the exact integrator knows its error: no %s with another",
                     error ? "channel for the error" : "tolerance");
   }
@@ -550,7 +559,11 @@ TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamer
   if (!(desc->tolerance >= 0) || !isfinite(desc->tolerance)) {
     return ARGUMENT(context, "a tolerance of %g: must be 0 or a positive number", desc->tolerance);
   }
-  TetcastStatus status = check_scene(scene, desc, frame);
+  const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT,
+             error = tc_frame_channel(frame, TETCAST_CHANNEL_ERROR) != NULL;
+  TetcastStatus status = check_channels(scene, exact, frame);
+  if (!status)
+    status = check_scene(scene, exact, desc->tolerance, error);
   if (!status)
     status = check_adaptive(scene, desc, frame);
   if (!status)
@@ -626,4 +639,66 @@ TetcastStatus tetcast_scene_draw_outline(const TetcastScene *scene, const Tetcas
   if (!status)
     tc_outline_draw(scene->volume, &view, desc->stop, color, height, desc->picture_height ? desc->first_row : 0, frame);
   return status;
+}
+
+/* ── any rays ── */
+
+TetcastRays tetcast_rays_default(void) {
+  return (TetcastRays){.cookie = TC_COOKIE};
+}
+
+TetcastCastDesc tetcast_cast_desc_default(void) {
+  return (TetcastCastDesc){.cookie = TC_COOKIE};
+}
+
+/* Whether the scene can be seen without a camera, and has what is asked for. */
+static TetcastStatus check_result(const TetcastScene *scene, const TetcastCastResult *result) {
+  TetcastContext *context = scene->context;
+  if (tc_scene_is_lit(scene))
+    return ARGUMENT(context, "rays: light in the volume is seen from a camera only");
+  if (scene->boundary.opacity > 0 && scene->boundary.edges)
+    return ARGUMENT(context, "rays: the boundary's edges are as wide as a camera's pixels");
+  if (!scene->coefficients && (result->radiance || result->group_optical_depth || result->transmittance))
+    return ARGUMENT(context, "rays: only scenes with coefficients have groups");
+  if (scene->blend && result->optical_depth)
+    return ARGUMENT(context, "rays: with another blend mode than composite there is no optical depth");
+  if (!scene->blend && result->value)
+    return ARGUMENT(context, "rays: with the blend mode composite there is no value");
+  return TETCAST_OK;
+}
+
+typedef struct SceneCast {
+  const TetcastScene *scene;
+  const TetcastRays *rays;
+  TetcastCastDesc desc;
+  const TetcastCastResult *result;
+  TetcastRenderStats *stats;
+} SceneCast;
+
+static TetcastStatus scene_cast(void *data) {
+  const SceneCast *call = data;
+  return tc_scene_cast(call->scene, call->rays, &call->desc, call->result, call->stats);
+}
+
+TetcastStatus tetcast_scene_cast(const TetcastScene *scene, const TetcastRays *rays, const TetcastCastDesc *desc,
+                                 const TetcastCastResult *result, TetcastRenderStats *stats) {
+  TC_ENTRY;
+  const TetcastCastDesc defaults = tetcast_cast_desc_default();
+  if (!desc)
+    desc = &defaults;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
+  TetcastContext *context = scene->context;
+  CHECK_DESC(context, rays);
+  CHECK_DESC(context, desc);
+  CHECK_GIVEN(context, result);
+  if ((unsigned)desc->isa > TETCAST_ISA_AVX512)
+    return ARGUMENT(context, "unknown instruction set %d", (int)desc->isa);
+  TetcastStatus status = check_result(scene, result);
+  if (!status)
+    status = check_scene(scene, true, 0, result->error != NULL);
+  if (!status)
+    status = tc_rays_check(context, rays);
+  SceneCast call = {scene, rays, *desc, result, stats};
+  return status ? status : tc_call(scene_cast, &call, &call.desc.progress);
 }

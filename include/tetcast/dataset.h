@@ -52,6 +52,9 @@ typedef struct TetcastDatasetDesc {
    * is then in the stretched system. Values of arrays stay as they are, those of vectors, too. A coordinate that its
    * type can't hold then is TETCAST_ERROR_DATA. Default: 1, 1, 1. */
   double stretch[3];
+  /* Whether tetcast_dataset_sources() is wanted, which takes 4 bytes for each tetrahedron where cells are cut. Default:
+   * false. */
+  bool sources;
 } TetcastDatasetDesc;
 
 /* Makes a desc of all blocks, all arrays and the first step, with every setting at its default. */
@@ -163,6 +166,11 @@ TETCAST_API int64_t tetcast_dataset_step(const TetcastDataset *dataset);
 /* Tells what cutting the file's cells has come to; all numbers are 0 if all cells were tetrahedra already. Vertices
  * that were added come after the file's points. */
 TETCAST_API TetcastCutInfo tetcast_dataset_cut(const TetcastDataset *dataset);
+
+/* [t] int32: the cell that each tetrahedron of the mesh is a part of, counted as the file has them, from 0, without
+ * those left out. None if the desc did not ask for it (it may be there nevertheless), and where all cells are
+ * tetrahedra: each is its own. Valid while the dataset lives. */
+TETCAST_API TetcastArray tetcast_dataset_sources(const TetcastDataset *dataset);
 
 /* Makes a mesh of the tetrahedra, which the caller destroys. The mesh may refer to arrays of the dataset, which must
  * outlive it. */

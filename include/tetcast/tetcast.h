@@ -6,6 +6,7 @@
 #include <tetcast/array.h>
 #include <tetcast/blend.h>
 #include <tetcast/camera.h>
+#include <tetcast/cast.h>
 #include <tetcast/cells.h>
 #include <tetcast/clip.h>
 #include <tetcast/context.h>

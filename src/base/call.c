@@ -9,12 +9,9 @@ enum { STACK = 4 << 20 };
 
 /* What the host is asked to do, by a thread of ours. */
 typedef struct Request {
-  TetcastContext *context; /* a message … */
-  TetcastSeverity severity;
-  const char *text;
-  const TetcastProgress *progress; /* … or, if not NULL, progress */
-  double fraction;
-  bool go_on; /* the answer */
+  TcHostFunction *function;
+  void *data;
+  bool answer;
 } Request;
 
 struct TcCall {
@@ -61,10 +58,7 @@ static void serve(Request *request) {
   TcEntry *entry = here.entry;
   if (entry)
     tc_floating_end(&entry->host);
-  if (request->progress)
-    request->go_on = request->progress->function(request->progress->user, request->fraction);
-  else
-    request->context->message(request->context->message_user, request->severity, request->text);
+  request->answer = request->function(request->data);
   if (entry)
     tc_floating_begin(&entry->host);
 }
@@ -85,9 +79,37 @@ static void ask(Request *request) {
   pthread_mutex_unlock(&call->mutex);
 }
 
+bool tc_call_host(TcHostFunction *function, void *data) {
+  Request request = {.function = function, .data = data};
+  ask(&request);
+  return request.answer;
+}
+
+typedef struct Message {
+  TetcastContext *context;
+  TetcastSeverity severity;
+  const char *text;
+} Message;
+
+static bool send(void *data) {
+  const Message *message = data;
+  message->context->message(message->context->message_user, message->severity, message->text);
+  return true;
+}
+
 void tc_call_message(TetcastContext *context, TetcastSeverity severity, const char *text) {
   if (context->message)
-    ask(&(Request){.context = context, .severity = severity, .text = text});
+    tc_call_host(send, &(Message){context, severity, text});
+}
+
+typedef struct Report {
+  const TetcastProgress *progress; /* the host's */
+  double fraction;
+} Report;
+
+static bool tell(void *data) {
+  const Report *report = data;
+  return report->progress->function(report->progress->user, report->fraction);
 }
 
 /* Each time costs two changes of thread: a thousand times a call is often enough. */
@@ -96,9 +118,7 @@ static bool report(void *user, double fraction) {
   if (fraction < call->reported + 0.001)
     return true;
   call->reported = fraction;
-  Request request = {.progress = &call->progress, .fraction = fraction};
-  ask(&request);
-  return request.go_on;
+  return tc_call_host(tell, &(Report){&call->progress, fraction});
 }
 
 /* ── threads ── */

@@ -34,7 +34,12 @@ typedef TetcastStatus TcBody(void *data);
  * replaced by a function that hands reports on to the calling thread. */
 TetcastStatus tc_call(TcBody *body, void *data, TetcastProgress *progress);
 
-/* Calls the host's function for messages, on the thread that made the call. */
+/* Calls a function that calls one of the host's, on the thread that made the call and in its own floating-point
+ * environment, and returns what it returns. */
+typedef bool TcHostFunction(void *data);
+bool tc_call_host(TcHostFunction *function, void *data);
+
+/* Calls the host's function for messages. */
 void tc_call_message(TetcastContext *context, TetcastSeverity severity, const char *text);
 
 /* ── threads of the library's own ── */

@@ -136,6 +136,20 @@ TC_INLINE void tc_load_records(const TcReal *const at[TC_LANES], TcVec component
 #endif
 }
 
+#if !TC_SINGLE
+/* The same of numbers in single precision. */
+TC_INLINE void tc_load_float_records(const float *const at[TC_LANES], TcVec component[4]) {
+  /* A 4 × 4 transpose. */
+  const __m128 a = _mm_loadu_ps(at[0]), b = _mm_loadu_ps(at[1]), c = _mm_loadu_ps(at[2]), d = _mm_loadu_ps(at[3]);
+  const __m128 front = _mm_unpacklo_ps(a, b), back = _mm_unpackhi_ps(a, b), next_front = _mm_unpacklo_ps(c, d),
+               next_back = _mm_unpackhi_ps(c, d);
+  component[0] = (TcVec)_mm256_cvtps_pd(_mm_movelh_ps(front, next_front));
+  component[1] = (TcVec)_mm256_cvtps_pd(_mm_movehl_ps(next_front, front));
+  component[2] = (TcVec)_mm256_cvtps_pd(_mm_movelh_ps(back, next_back));
+  component[3] = (TcVec)_mm256_cvtps_pd(_mm_movehl_ps(next_back, back));
+}
+#endif
+
 /* a d − b c by Kahan's difference of products (Jeannerod, Louvet, Muller, 2013): to a relative error of two units in
  * the last place, so with the exact sign, or zero, as long as nothing underflows. */
 TC_INLINE TcVec tc_determinant(TcVec a, TcVec b, TcVec c, TcVec d) {

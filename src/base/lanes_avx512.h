@@ -177,6 +177,21 @@ TC_INLINE void tc_load_records(const TcReal *const at[TC_LANES], TcVec component
 #endif
 }
 
+#if !TC_SINGLE
+/* The same of numbers in single precision. */
+TC_INLINE void tc_load_float_records(const float *const at[TC_LANES], TcVec component[4]) {
+  __m256 r[4]; /* lanes j and j + 4: a 4 × 4 transpose in each half */
+  for (int j = 0; j < 4; ++j)
+    r[j] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(at[j])), _mm_loadu_ps(at[j + 4]), 1);
+  const __m256d a = (__m256d)_mm256_unpacklo_ps(r[0], r[1]), b = (__m256d)_mm256_unpackhi_ps(r[0], r[1]);
+  const __m256d c = (__m256d)_mm256_unpacklo_ps(r[2], r[3]), d = (__m256d)_mm256_unpackhi_ps(r[2], r[3]);
+  component[0] = (TcVec)_mm512_cvtps_pd((__m256)_mm256_unpacklo_pd(a, c));
+  component[1] = (TcVec)_mm512_cvtps_pd((__m256)_mm256_unpackhi_pd(a, c));
+  component[2] = (TcVec)_mm512_cvtps_pd((__m256)_mm256_unpacklo_pd(b, d));
+  component[3] = (TcVec)_mm512_cvtps_pd((__m256)_mm256_unpackhi_pd(b, d));
+}
+#endif
+
 /* a d − b c by Kahan's difference of products (Jeannerod, Louvet, Muller, 2013): to a relative error of two units in
  * the last place, so with the exact sign, or zero, as long as nothing underflows. */
 TC_INLINE TcVec tc_determinant(TcVec a, TcVec b, TcVec c, TcVec d) {

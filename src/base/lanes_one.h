@@ -87,6 +87,12 @@ TC_INLINE void tc_load_records(const TcReal *const at[TC_LANES], TcVec component
     component[k] = at[0][k];
 }
 
+/* The same of numbers in single precision. */
+TC_INLINE void tc_load_float_records(const float *const at[TC_LANES], TcVec component[4]) {
+  for (int k = 0; k < 4; ++k)
+    component[k] = (double)at[0][k];
+}
+
 /* a d − b c to a relative error of 2⁻⁵¹ (of ½ where it is less than 2⁻¹⁰⁴ of its products), with the exact sign, or
  * zero: the errors of the two products are added to their difference e. If the products are within a factor of two, e
  * is exact (Sterbenz), as is the sum of the errors but for its last bit; else e is at least half of the larger product,

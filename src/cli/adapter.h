@@ -24,6 +24,7 @@
   X(bool, dataset_time, (const TetcastDataset *, int64_t, double *))                                                   \
   X(int64_t, dataset_step, (const TetcastDataset *))                                                                   \
   X(TetcastCutInfo, dataset_cut, (const TetcastDataset *))                                                             \
+  X(TetcastArray, dataset_sources, (const TetcastDataset *))                                                           \
   X(TetcastStatus, dataset_mesh, (const TetcastDataset *, TetcastMesh **))                                             \
   X(TetcastStatus, dataset_field, (const TetcastDataset *, const char *, TetcastField **, const char **))              \
   X(TetcastStatus, dataset_write,                                                                                      \

@@ -16,6 +16,7 @@ enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_USAGE = 2 }; /* exit codes; 128 + signa
 int tetcast_cli_render(int argc, char **argv);
 int tetcast_cli_converge(int argc, char **argv);
 int tetcast_cli_transfer(int argc, char **argv);
+int tetcast_cli_cast(int argc, char **argv);
 int tetcast_cli_info(int argc, char **argv);
 int tetcast_cli_mesh(int argc, char **argv);
 int tetcast_cli_completion(int argc, char **argv);

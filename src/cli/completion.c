@@ -11,16 +11,14 @@
 static const struct {
   const char *name;
   int (*options)(CompletionOption list[COMPLETION_OPTIONS]);
-} commands[] = {{"render", completion_of_render},
-                {"converge", completion_of_converge},
-                {"transfer", completion_of_transfer},
-                {"info", completion_of_info},
-                {"mesh", completion_of_mesh}};
+} commands[] = {{"render", completion_of_render},     {"converge", completion_of_converge},
+                {"transfer", completion_of_transfer}, {"cast", completion_of_cast},
+                {"info", completion_of_info},         {"mesh", completion_of_mesh}};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 /* The first words of a command line, and what two of them go on with. */
-static const char first[] = "render converge transfer info mesh completion help",
-                  helped[] = "render converge transfer info mesh completion", shells[] = "bash zsh fish";
+static const char first[] = "render converge transfer cast info mesh completion help",
+                  helped[] = "render converge transfer cast info mesh completion", shells[] = "bash zsh fish";
 
 /* "a b c"; `colon` stands for one. */
 static void put_words(const char *const *words, const char *colon) {

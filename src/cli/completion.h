@@ -24,6 +24,7 @@ enum { COMPLETION_OPTIONS = 128 /* of a command, at most */, COMPLETION_WORDS = 
 int completion_of_render(CompletionOption list[COMPLETION_OPTIONS]);
 int completion_of_transfer(CompletionOption list[COMPLETION_OPTIONS]);
 int completion_of_converge(CompletionOption list[COMPLETION_OPTIONS]);
+int completion_of_cast(CompletionOption list[COMPLETION_OPTIONS]);
 int completion_of_info(CompletionOption list[COMPLETION_OPTIONS]);
 int completion_of_mesh(CompletionOption list[COMPLETION_OPTIONS]);
 

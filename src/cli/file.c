@@ -19,9 +19,9 @@ static bool fail(const char *path, int error) {
   return false;
 }
 
-static bool put_text(int descriptor, const char *text) {
+static bool put_text(int descriptor, const char *text, size_t size) {
   errno = 0;
-  for (size_t left = strlen(text); left > 0;) {
+  for (size_t left = size; left > 0;) {
     const ssize_t count = write(descriptor, text, left);
     if (count < 0 && errno == EINTR)
       continue;
@@ -69,13 +69,14 @@ static int open_beside(const char *target, const struct stat *former, char **tem
   return descriptor;
 }
 
-static bool write_beside(const char *path, const char *target, const struct stat *former, const char *text) {
+static bool write_beside(const char *path, const char *target, const struct stat *former, const char *text,
+                         size_t size) {
   char *temporary;
   const int descriptor = open_beside(target, former, &temporary);
   if (descriptor < 0)
     return fail(path, errno);
   const int lock = fcntl(descriptor, F_DUPFD_CLOEXEC, 0); /* until the file has its name */
-  bool done = !text || put_text(descriptor, text);
+  bool done = !text || put_text(descriptor, text, size);
   int error = errno;
   if (close(descriptor) != 0 && done) {
     done = false;
@@ -102,14 +103,14 @@ static bool is_open_already(const char *path) {
   return false;
 }
 
-/* Writes a text. With NULL it only checks whether that could be done. */
-static bool write_or_check(const char *path, const char *text) {
+/* Writes a text of so many bytes. With NULL it only checks whether that could be done. */
+static bool write_or_check(const char *path, const char *text, size_t size) {
   struct stat status;
   if (stat(path, &status) != 0) {
     if (errno != ENOENT)
       return fail(path, errno);
     char *target = cli_path_follow(path);
-    const bool done = write_beside(path, target, NULL, text);
+    const bool done = write_beside(path, target, NULL, text, size);
     free(target);
     return done;
   }
@@ -121,7 +122,7 @@ static bool write_or_check(const char *path, const char *text) {
     char *target = realpath(path, NULL); /* a symbolic link stays, what it points to is replaced */
     if (!target)
       return fail(path, errno);
-    const bool done = write_beside(path, target, &status, text);
+    const bool done = write_beside(path, target, &status, text, size);
     free(target);
     return done;
   }
@@ -130,18 +131,18 @@ static bool write_or_check(const char *path, const char *text) {
   const int descriptor = open(path, O_WRONLY | O_APPEND | O_CLOEXEC);
   if (descriptor < 0)
     return fail(path, errno);
-  const bool done = put_text(descriptor, text);
+  const bool done = put_text(descriptor, text, size);
   const int error = errno;
   close(descriptor);
   return done || fail(path, error ? error : EIO);
 }
 
 bool cli_file_write(const char *path, const char *text) {
-  return write_or_check(path, text);
+  return write_or_check(path, text, strlen(text));
 }
 
 bool cli_file_check(const char *path) {
-  return write_or_check(path, NULL);
+  return write_or_check(path, NULL, 0);
 }
 
 /* ".tetcast-12-3", with or without an extension. */
@@ -237,13 +238,19 @@ bool cli_text_write(CliText *text, const char *folder, const char *name) {
   const bool whole = !ferror(text->file);
   bool done = fclose(text->file) == 0 && whole;
   if (done)
-    done = cli_file_write(path, text->memory);
+    done = write_or_check(path, text->memory, text->size);
   else
     cli_error("cannot write '%s': out of memory", path);
   free(path);
   free(text->memory);
   free(text);
   return done;
+}
+
+void cli_text_drop(CliText *text) {
+  fclose(text->file);
+  free(text->memory);
+  free(text);
 }
 
 char *cli_path_folder(const char *path) {

@@ -14,7 +14,7 @@ bool cli_file_write(const char *path, const char *text);
 /* Whether cli_file_write() could start: the folder is there and writable. False after a message. */
 bool cli_file_check(const char *path);
 
-/* A text that is put together in memory, by printing to `file`, before it is written. */
+/* A text, or any bytes, put together in memory, by printing to `file`, before it is written. */
 typedef struct CliText {
   FILE *file;
   char *memory;
@@ -25,6 +25,9 @@ CliText *cli_text_begin(void);
 
 /* Writes it as a file of a folder (NULL: `name` is the whole path) and frees it. False after a message. */
 bool cli_text_write(CliText *text, const char *folder, const char *name);
+
+/* Frees it without writing it. */
+void cli_text_drop(CliText *text);
 
 /* What is being written has names of this form beside its target, and a lock (flock) that ends with the process:
  * .tetcast-PROCESS-NUMBER and an extension. The adapters do the same. This removes those in the folder of `path` that

@@ -26,6 +26,8 @@ void fileset_add_options(FileSet *set, const RenderOptions *options) {
   fileset_add(set, "--stop-depth", options->stop_depth, false);
   fileset_add(set, "--stats", options->stats, true);
   fileset_add(set, "--save-scene", options->save_scene, true);
+  fileset_add(set, "--rays", options->rays, false);
+  fileset_add(set, "--matrix", options->matrix, true);
 }
 
 /* Brings those that are the same next to each other. */

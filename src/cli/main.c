@@ -19,6 +19,7 @@ static const char help_text[] = "Usage: tetcast COMMAND [options]\n"
                                 "  render INPUT   make a picture of a mesh file\n"
                                 "  converge INPUT measure error against run time, with plots\n"
                                 "  transfer INPUT propose transfer functions, with a sheet of pictures\n"
+                                "  cast INPUT     what rays of a list gather and cross, as numbers\n"
                                 "  info INPUT     show what is in a mesh file\n"
                                 "  mesh SURFACE   fill a closed surface with tetrahedra\n"
                                 "  completion SHELL  print what bash, zsh or fish need to complete a command line\n"
@@ -42,9 +43,13 @@ typedef struct Command {
   int (*run)(int argc, char **argv);
 } Command;
 
-static const Command commands[] = {{"render", tetcast_cli_render},     {"converge", tetcast_cli_converge},
-                                   {"transfer", tetcast_cli_transfer}, {"info", tetcast_cli_info},
-                                   {"mesh", tetcast_cli_mesh},         {"completion", tetcast_cli_completion}};
+static const Command commands[] = {{"render", tetcast_cli_render},
+                                   {"converge", tetcast_cli_converge},
+                                   {"transfer", tetcast_cli_transfer},
+                                   {"cast", tetcast_cli_cast},
+                                   {"info", tetcast_cli_info},
+                                   {"mesh", tetcast_cli_mesh},
+                                   {"completion", tetcast_cli_completion}};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static const Command *find_command(const char *name) {
@@ -86,7 +91,7 @@ int main(int argc, char **argv) {
   cli_interrupt_catch();
   opterr = 0;
   if (argc < 2)
-    return cli_usage_error("", "no command given: render, converge, info or mesh");
+    return cli_usage_error("", "no command given: render, converge, cast, info or mesh");
   const char *word = argv[1];
   const Command *command = find_command(word);
   if (command)

@@ -25,6 +25,10 @@
    BIT(OPTION_LOG) | BIT(OPTION_CENTRE) | BIT(OPTION_OPACITY_MODEL) | BIT(OPTION_BLEND) | BIT(OPTION_ISOSURFACE) |     \
    BIT(OPTION_SLICE) | BIT(OPTION_SURFACE) | BIT(OPTION_EDGES) | BIT(OPTION_LEGEND))
 
+/* What is about pictures alone, and what all commands have but converge. */
+#define PICTURES (COMMAND_RENDER | COMMAND_CONVERGE)
+#define EXACTLY  (COMMAND_RENDER | COMMAND_CAST)
+
 /* Order of the library's enumerations. */
 static const char *const opacity_models[] = {"unit-distance", "vtk-unstructured", "ospray", NULL};
 static const char *const blends[] = {"composite", "maximum", "minimum", "average", "additive", NULL};
@@ -33,6 +37,7 @@ static const char *const normals[] = {"smooth", "flat", NULL};
 static const char *const views[] = {"iso", "+x", "-x", "+y", "-y", "+z", "-z", NULL};
 static const char *const isas[] = {"auto", "scalar", "avx2", "avx512", NULL};
 static const char *const traversals[] = {"shell", "faces", NULL};
+static const char *const bases[] = {"cells", "points", NULL}; /* of Basis */
 static const char *const pixel_types[] = {"", "uint8", "uint16", "half", "float", "double", NULL};
 
 const RenderRow render_table[OPTION_COUNT] = {
@@ -69,11 +74,11 @@ const RenderRow render_table[OPTION_COUNT] = {
                           "expected NUMBER[:COLOUR][:OPACITY], a name or #rrggbb or r,g,b, and a number from 0 to 1"},
     [OPTION_OPACITY_MODEL] = {"opacity-model", KIND_CHOICE, AT(opacity_model), .names = opacity_models,
                               .excludes = DIRECT, .form = "expected unit-distance, vtk-unstructured or ospray"},
-    [OPTION_EXTINCTION] = {"extinction", KIND_TEXT, AT(extinction), .excludes = TRANSFER, .only = COMMAND_RENDER,
+    [OPTION_EXTINCTION] = {"extinction", KIND_TEXT, AT(extinction), .excludes = TRANSFER, .only = EXACTLY,
                            .form = "expected NAME, NAME:component or NAME:mag"},
-    [OPTION_EMISSION] = {"emission", KIND_TEXT, AT(emission), .excludes = TRANSFER, .only = COMMAND_RENDER,
+    [OPTION_EMISSION] = {"emission", KIND_TEXT, AT(emission), .excludes = TRANSFER, .only = EXACTLY,
                          .form = "expected NAME, NAME:component or NAME:mag"},
-    [OPTION_GROUPS] = {"groups", KIND_FLAG, AT(groups), .excludes = TRANSFER, .only = COMMAND_RENDER,
+    [OPTION_GROUPS] = {"groups", KIND_FLAG, AT(groups), .excludes = TRANSFER, .only = EXACTLY,
                        .form = "expected true or false"},
     [OPTION_BLEND] = {"blend", KIND_CHOICE, AT(blend), .names = blends, .excludes = DIRECT,
                       .form = "expected composite, maximum, minimum, average or additive"},
@@ -108,32 +113,32 @@ const RenderRow render_table[OPTION_COUNT] = {
     [OPTION_CLIP_BOX] = {"clip-box", KIND_NUMBERS, AT(clip_box), 6, 6, -DBL_MAX, DBL_MAX,
                          .form = "expected six numbers x0,x1,y0,y1,z0,z1, the first of each pair not above the second"},
     [OPTION_STOP_DEPTH] = {"stop-depth", KIND_PATH, AT(stop_depth), .only = COMMAND_RENDER, .form = "expected a path"},
-    [OPTION_EYE] = {"eye", KIND_NUMBERS, AT(eye), 3, 3, -DBL_MAX, DBL_MAX,
+    [OPTION_EYE] = {"eye", KIND_NUMBERS, AT(eye), 3, 3, -DBL_MAX, DBL_MAX, .only = PICTURES,
                     .excludes = BIT(OPTION_VIEW) | BIT(OPTION_AZIMUTH) | BIT(OPTION_ELEVATION) | BIT(OPTION_ZOOM),
                     .form = "expected three numbers x,y,z"},
-    [OPTION_TARGET] = {"target", KIND_NUMBERS, AT(target), 3, 3, -DBL_MAX, DBL_MAX,
+    [OPTION_TARGET] = {"target", KIND_NUMBERS, AT(target), 3, 3, -DBL_MAX, DBL_MAX, .only = PICTURES,
                        .form = "expected three numbers x,y,z"},
-    [OPTION_UP] = {"up", KIND_NUMBERS, AT(up), 3, 3, -DBL_MAX, DBL_MAX,
+    [OPTION_UP] = {"up", KIND_NUMBERS, AT(up), 3, 3, -DBL_MAX, DBL_MAX, .only = PICTURES,
                    .form = "expected three numbers x,y,z, not all zero"},
     [OPTION_FOVY] = {"fovy", KIND_NUMBERS, AT(fovy), 1, 1, 1e-6, 179.999999, .excludes = BIT(OPTION_ORTHO),
-                     .form = "expected an angle between 0 and 180 degrees"},
-    [OPTION_VIEW] = {"view", KIND_CHOICE, AT(view), .names = views,
+                     .only = PICTURES, .form = "expected an angle between 0 and 180 degrees"},
+    [OPTION_VIEW] = {"view", KIND_CHOICE, AT(view), .names = views, .only = PICTURES,
                      .excludes = BIT(OPTION_EYE) | BIT(OPTION_AZIMUTH) | BIT(OPTION_ELEVATION),
                      .form = "expected iso, or the direction that is looked along: +x, -x, +y, -y, +z or -z"},
-    [OPTION_AZIMUTH] = {"azimuth", KIND_NUMBERS, AT(azimuth), 1, 1, -1e6, 1e6,
+    [OPTION_AZIMUTH] = {"azimuth", KIND_NUMBERS, AT(azimuth), 1, 1, -1e6, 1e6, .only = PICTURES,
                         .excludes = BIT(OPTION_EYE) | BIT(OPTION_VIEW), .form = "expected an angle in degrees"},
-    [OPTION_ELEVATION] = {"elevation", KIND_NUMBERS, AT(elevation), 1, 1, -90, 90,
+    [OPTION_ELEVATION] = {"elevation", KIND_NUMBERS, AT(elevation), 1, 1, -90, 90, .only = PICTURES,
                           .excludes = BIT(OPTION_EYE) | BIT(OPTION_VIEW),
                           .form = "expected an angle from -90 to 90 degrees"},
-    [OPTION_ZOOM] = {"zoom", KIND_NUMBERS, AT(zoom), 1, 1, 1e-6, 1e6, .excludes = BIT(OPTION_EYE) | BIT(OPTION_ORTHO),
-                     .form = "expected a factor from 1e-6 to 1e6"},
-    [OPTION_ORTHO] = {"ortho", KIND_NUMBERS, AT(ortho), 1, 1, DBL_MIN, DBL_MAX,
+    [OPTION_ZOOM] = {"zoom", KIND_NUMBERS, AT(zoom), 1, 1, 1e-6, 1e6, .only = PICTURES,
+                     .excludes = BIT(OPTION_EYE) | BIT(OPTION_ORTHO), .form = "expected a factor from 1e-6 to 1e6"},
+    [OPTION_ORTHO] = {"ortho", KIND_NUMBERS, AT(ortho), 1, 1, DBL_MIN, DBL_MAX, .only = PICTURES,
                       .excludes = BIT(OPTION_FOVY) | BIT(OPTION_ZOOM), .form = "expected a height above 0"},
     [OPTION_ORBIT] = {"orbit", KIND_TEXT, AT(orbit), .excludes = BIT(OPTION_DOLLY), .only = COMMAND_RENDER,
                       .form = "expected N[:DEGREES]: how many pictures, from 1 to 1000000, and an angle"},
     [OPTION_DOLLY] = {"dolly", KIND_TEXT, AT(dolly), .excludes = BIT(OPTION_ORBIT), .only = COMMAND_RENDER,
                       .form = "expected N[:FACTOR]: how many pictures, from 1 to 1000000, and a factor above 0"},
-    [OPTION_SIZE] = {"size", KIND_INTEGERS, AT(size), 2, 2, 1, 1 << 20,
+    [OPTION_SIZE] = {"size", KIND_INTEGERS, AT(size), 2, 2, 1, 1 << 20, .only = PICTURES,
                      .form = "expected WxH: whole numbers from 1 to 1048576, no more than 2^30 pixels"},
     [OPTION_TILES] = {"tiles", KIND_OPTIONAL, AT(tiles), .only = COMMAND_RENDER,
                       .form = "expected nothing, or a whole number of rows from 1 to 1048576"},
@@ -154,7 +159,7 @@ const RenderRow render_table[OPTION_COUNT] = {
          .form = "expected exact, midpoint:N, trapezoid:N, gauss:N (N to 16) or table:N (N from 2 to 4096)"},
     [OPTION_TOLERANCE] = {"tolerance", KIND_NUMBERS, AT(tolerance), 1, 1, 0, DBL_MAX, .only = COMMAND_RENDER,
                           .form = "expected a number, 0 or above"},
-    [OPTION_CHANNELS] = {"channels", KIND_TEXT, AT(channels), .only = COMMAND_RENDER,
+    [OPTION_CHANNELS] = {"channels", KIND_TEXT, AT(channels), .only = EXACTLY,
                          .form = "expected error, or depth, normal, or value, or of radiance, optical_depth, "
                                  "transmittance, path_length some; "
                                  "and cells"},
@@ -165,7 +170,7 @@ const RenderRow render_table[OPTION_COUNT] = {
     [OPTION_ISA] = {"isa", KIND_CHOICE, AT(isa), .names = isas, .form = "expected auto, scalar, avx2 or avx512"},
     [OPTION_THREADS] = {"threads", KIND_INTEGERS, AT(threads), 1, 1, 0, 4096,
                         .form = "expected a whole number from 0 (all) to 4096"},
-    [OPTION_REPEAT] = {"repeat", KIND_INTEGERS, AT(repeat), 1, 1, 1, 1e6,
+    [OPTION_REPEAT] = {"repeat", KIND_INTEGERS, AT(repeat), 1, 1, 1, 1e6, .only = PICTURES,
                        .form = "expected a whole number from 1 to 1000000"},
     [OPTION_PIXEL_TYPE] = {"pixel-type", KIND_CHOICE, AT(pixel_type), .names = pixel_types, .only = COMMAND_RENDER,
                            .form = "expected uint8, uint16, half, float or double"},
@@ -177,6 +182,10 @@ const RenderRow render_table[OPTION_COUNT] = {
     [OPTION_QUIET] = {"quiet", KIND_FLAG, AT(quiet), .form = "expected true or false"},
     [OPTION_REFINE] = {"refine", KIND_FLAG, AT(refine), .only = COMMAND_CONVERGE},
     [OPTION_NO_PLOTS] = {"no-plots", KIND_FLAG, AT(no_plots), .only = COMMAND_CONVERGE},
+    [OPTION_RAYS] = {"rays", KIND_PATH, AT(rays), .only = COMMAND_CAST, .form = "expected a path"},
+    [OPTION_MATRIX] = {"matrix", KIND_PATH, AT(matrix), .only = COMMAND_CAST, .form = "expected a path"},
+    [OPTION_BASIS] = {"basis", KIND_CHOICE, AT(basis), .names = bases, .only = COMMAND_CAST,
+                      .form = "expected cells or points"},
     [OPTION_SHEET] = {"sheet", KIND_PATH, AT(sheet), .only = COMMAND_TRANSFER, .form = "expected a path"},
     [OPTION_TAKE] = {"take", KIND_INTEGERS, AT(take), 1, 1, 1, 100, .only = COMMAND_TRANSFER,
                      .form = "expected the number of a candidate"},
@@ -195,10 +204,12 @@ static const OptionSet of_transfer =
     BIT(OPTION_SIZE) | BIT(OPTION_TRAVERSAL) | BIT(OPTION_ISA) | BIT(OPTION_THREADS) | BIT(OPTION_STRICT) |
     BIT(OPTION_QUIET);
 
-bool render_option_of_command(OptionId id, RenderCommand command) {
-  if (command == COMMAND_TRANSFER && !render_table[id].only)
-    return of_transfer >> id & 1;
-  return !render_table[id].only || render_table[id].only == command;
+bool render_option_of_command(OptionId id, unsigned commands) {
+  const unsigned only = render_table[id].only;
+  if (commands & COMMAND_TRANSFER && (of_transfer >> id & 1 || only & COMMAND_TRANSFER))
+    return true;
+  commands &= ~(unsigned)COMMAND_TRANSFER;
+  return commands && (!only || only & commands);
 }
 
 RenderOptions render_options_default(RenderCommand command) {
@@ -379,6 +390,22 @@ int render_option_channel_list(const char *text, TetcastChannel channels[32]) {
   }
 }
 
+bool render_option_ray_channels(const char *text, bool *length, bool *error) {
+  *length = *error = false;
+  for (;;) {
+    const size_t size = strcspn(text, ",");
+    bool *named = size == 6 && !strncmp(text, "length", size)  ? length
+                  : size == 5 && !strncmp(text, "error", size) ? error
+                                                               : NULL;
+    if (!named || *named)
+      return false;
+    *named = true;
+    if (!text[size])
+      return true;
+    text += size + 1;
+  }
+}
+
 uint32_t render_option_channels(const char *text) {
   TetcastChannel list[32];
   uint32_t channels = 0;
@@ -417,6 +444,11 @@ bool render_options_groups(const RenderOptions *options) {
 }
 
 uint32_t render_options_channels(const RenderOptions *options) {
+  bool length, error;
+  if (options->command == COMMAND_CAST)
+    return options->channels && render_option_ray_channels(options->channels, &length, &error) && error
+               ? TETCAST_CHANNEL_ERROR
+               : 0;
   if (options->channels)
     return render_option_channels(options->channels);
   if (!render_options_groups(options))
@@ -632,7 +664,9 @@ const char *render_options_set(RenderOptions *options, OptionId id, const Option
     const char *reason = id == OPTION_PRESET ? check_preset(value->text) : NULL;
     if (id == OPTION_INTEGRATOR && !render_option_integrator(value->text, &integrator, &n))
       reason = render_table[id].form;
-    if (id == OPTION_CHANNELS && !render_option_channels(value->text))
+    bool length, error;
+    if (id == OPTION_CHANNELS && !render_option_channels(value->text) &&
+        !(options->command == COMMAND_CAST && render_option_ray_channels(value->text, &length, &error)))
       reason = render_table[id].form;
     if (id == OPTION_TIME && !render_option_dataset(NULL, value->text, -1, &(TetcastDatasetDesc){0}))
       reason = render_table[id].form;

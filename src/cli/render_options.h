@@ -88,13 +88,22 @@ typedef enum OptionId {
   OPTION_SHEET,
   OPTION_TAKE,
   OPTION_PLOTS,
+  OPTION_RAYS,
+  OPTION_MATRIX,
+  OPTION_BASIS,
   OPTION_COUNT
 } OptionId;
 
 /* A set of options, bit 1 << OptionId for each. */
 __extension__ typedef unsigned __int128 OptionSet;
 
-typedef enum RenderCommand { COMMAND_RENDER = 1, COMMAND_CONVERGE = 2, COMMAND_TRANSFER = 4 } RenderCommand;
+/* Bits of a set. */
+typedef enum RenderCommand {
+  COMMAND_RENDER = 1,
+  COMMAND_CONVERGE = 2,
+  COMMAND_CAST = 4,
+  COMMAND_TRANSFER = 8
+} RenderCommand;
 
 /* The kinds of range that --range can name. */
 typedef enum RangeKind { RANGE_DEFAULT, RANGE_FIXED, RANGE_QUANTILES, RANGE_STEP, RANGE_SERIES } RangeKind;
@@ -110,7 +119,7 @@ typedef struct RenderOptions {
   /* NULL unless given */
   char *input, *output, *array, *block, *time, *transfer, *preset, *extinction, *emission, *integrator, *channels,
       *surface, *edges, *outline, *legend, *deep, *stats, *scene, *save_scene, *stop_depth, *orbit, *dolly, *tiles,
-      *sheet, *plots;
+      *sheet, *plots, *rays, *matrix;
   char **inputs; /* [input_count] of several files, the steps of a series; input is the first. NULL: one file */
   int input_count;
   json_t *transfer_object; /* of a scene file; instead of transfer */
@@ -128,6 +137,7 @@ typedef struct RenderOptions {
   int opacity_model, blend, shade, normals, view, traversal, isa, pixel_type; /* values of the library's enumerations */
   int cell_to_point, no_displacement, quiet, strict, resume, refine, no_plots, groups, shadows, logarithmic, bare, soft;
   int list_presets; /* instead of a picture */
+  int basis;        /* a Basis */
   OptionSet given;  /* those that have a value from command line or scene file */
   OptionSet source; /* the same for the source being read alone */
 } RenderOptions;
@@ -233,6 +243,9 @@ uint32_t render_option_channels(const char *text);
 /* The same one by one, in the order of the list; returns how many there are. */
 int render_option_channel_list(const char *text, TetcastChannel channels[32]);
 
+/* What --channels of rays names: "length", "error" or both. False: anything else. */
+bool render_option_ray_channels(const char *text, bool *length, bool *error);
+
 /* Those of the frame; --groups alone means the radiance, or the transmittance when nothing is emitted. */
 uint32_t render_options_channels(const RenderOptions *options);
 
@@ -277,13 +290,14 @@ typedef struct RenderRow {
   double low, high;         /* bounds of each */
   const char *const *names; /* of a choice */
   OptionSet excludes;
-  RenderCommand only; /* of this command alone, 0: of render, converge and, if it is among its own, transfer */
-  const char *form;   /* what is expected */
+  unsigned only;    /* of these commands alone, RenderCommand; 0: of all, but of transfer only if it is among its own */
+  const char *form; /* what is expected */
 } RenderRow;
 
 extern const RenderRow render_table[OPTION_COUNT];
 
-bool render_option_of_command(OptionId id, RenderCommand command);
+/* Whether it is of any of these commands. */
+bool render_option_of_command(OptionId id, unsigned commands);
 
 /* What the name of a picture ends with. */
 bool render_option_has_extension(const char *path, const char *extension);

@@ -13,6 +13,7 @@
 #include "cli.h"
 #include "color.h"
 #include "completion.h"
+#include "ray_file.h"
 #include "scene_file.h"
 #include "surface_text.h"
 #include "tiles.h"
@@ -20,7 +21,10 @@
 #include "view.h"
 
 static const char *command_name(const RenderOptions *options) {
-  return options->command == COMMAND_RENDER ? "render" : options->command == COMMAND_CONVERGE ? "converge" : "transfer";
+  return options->command == COMMAND_RENDER     ? "render"
+         : options->command == COMMAND_CAST     ? "cast"
+         : options->command == COMMAND_CONVERGE ? "converge"
+                                                : "transfer";
 }
 
 /* What of the light has nothing to fall on, or doesn't go with the rest. NULL: nothing. */
@@ -150,6 +154,8 @@ static char *find_fault(const RenderOptions *options) {
     view = tiles_fault(options);
   if (view)
     return cli_duplicate(view);
+  if (options->command == COMMAND_CAST) /* what follows is about pictures */
+    return NULL;
   TetcastIntegrator integrator = TETCAST_INTEGRATOR_EXACT;
   int n;
   if (options->integrator)
@@ -188,6 +194,9 @@ static int set_from_text(RenderOptions *options, OptionId id, const char *text) 
   const char *other = render_options_claim(options, id);
   if (other)
     return cli_usage_error(command_name(options), "--%s and --%s exclude each other", render_table[id].name, other);
+  bool length, error;
+  if (id == OPTION_CHANNELS && options->command == COMMAND_CAST && !render_option_ray_channels(text, &length, &error))
+    return cli_usage_error("cast", "--channels %s: expected length, error, or both", text);
   const char *reason = render_options_set(options, id, &value);
   return reason ? cli_usage_error(command_name(options), "--%s %s: %s", render_table[id].name, text, reason) : -1;
 }
@@ -199,9 +208,9 @@ static int set_inputs(RenderOptions *options, int count, char **paths) {
   for (int i = 0; i < count; i++)
     if (!*paths[i])
       return cli_usage_error(command, "the input is '': expected a path");
-  if (count > 1 && options->command == COMMAND_CONVERGE)
-    return cli_usage_error(command, "more than one input: '%s' and '%s'; a report is about one step", paths[0],
-                           paths[1]);
+  if (count > 1 && options->command != COMMAND_RENDER)
+    return cli_usage_error(command, "more than one input: '%s' and '%s'; %s about one step", paths[0], paths[1],
+                           options->command == COMMAND_CAST ? "rays are" : "a report is");
   if (render_options_set_inputs(options, count, (const char *const *)paths))
     return -1;
   return cli_usage_error(
@@ -213,11 +222,11 @@ static int set_inputs(RenderOptions *options, int count, char **paths) {
 
 enum { WORD_HELP = 'h', WORD_OUTPUT = 'o', WORD_OPTION = 256 };
 
-/* What getopt_long() is to know of a command's options, and which they are; ids may be NULL. */
-static void list_words(RenderCommand command, struct option words[OPTION_COUNT + 2], OptionId ids[OPTION_COUNT]) {
+/* What getopt_long() is to know of the options of commands, and which they are; ids may be NULL. */
+static void list_words(unsigned commands, struct option words[OPTION_COUNT + 2], OptionId ids[OPTION_COUNT]) {
   int count = 0;
   for (int id = 0; id < OPTION_COUNT; id++) {
-    if (id == OPTION_INPUT || !render_option_of_command((OptionId)id, command))
+    if (id == OPTION_INPUT || !render_option_of_command((OptionId)id, commands))
       continue;
     if (ids)
       ids[count] = (OptionId)id;
@@ -247,7 +256,8 @@ static const char *take_optional(OptionId id, int argc, char **argv) {
 /* The words of the command line; with `scene_only` everything but the options --scene and --help is left for later. */
 static int parse_words(RenderOptions *options, int argc, char **argv, bool scene_only) {
   struct option words[OPTION_COUNT + 2];
-  list_words(options->command, words, NULL);
+  const bool casts = options->command == COMMAND_CAST; /* which refuses by name what pictures have */
+  list_words(casts ? COMMAND_CAST | COMMAND_RENDER : options->command, words, NULL);
 
   optind = 0; /* getopt starts anew */
   int code;
@@ -256,6 +266,7 @@ static int parse_words(RenderOptions *options, int argc, char **argv, bool scene
       return cli_bad_option(command_name(options), code, argc, argv, words);
     if (code == WORD_HELP) {
       fputs(options->command == COMMAND_RENDER     ? render_help
+            : casts                                ? cast_help
             : options->command == COMMAND_CONVERGE ? converge_help
                                                    : transfer_help,
             stdout);
@@ -264,6 +275,9 @@ static int parse_words(RenderOptions *options, int argc, char **argv, bool scene
     const OptionId id = code == WORD_OUTPUT ? OPTION_OUTPUT : (OptionId)(code - WORD_OPTION);
     if (code == WORD_OUTPUT && !strcmp(optarg, "utput"))
       return cli_usage_error(command_name(options), "unknown option -output; did you mean --output?");
+    if (!render_option_of_command(id, options->command))
+      return cli_usage_error("cast", "--%s is about pictures: rays that are cast one by one have none",
+                             render_table[id].name);
     const char *text = optarg;
     if (!text && render_table[id].kind == KIND_OPTIONAL)
       text = take_optional(id, argc, argv);
@@ -279,7 +293,7 @@ static int parse_words(RenderOptions *options, int argc, char **argv, bool scene
 }
 
 /* A scene file states a picture; what converge takes of it is what is seen, at its own size but in the shape of the
- * picture. */
+ * picture; what cast takes is the scene without its camera. */
 static void take_scene(RenderOptions *options) {
   if (options->command == COMMAND_RENDER)
     return;
@@ -292,7 +306,8 @@ static void take_scene(RenderOptions *options) {
   }
   options->repeat = standard.repeat;
   for (int id = 0; id < OPTION_COUNT; id++)
-    if (id == OPTION_OUTPUT || !render_option_of_command((OptionId)id, options->command)) {
+    if (id == OPTION_OUTPUT || (id == OPTION_CHANNELS && options->command == COMMAND_CAST) ||
+        !render_option_of_command((OptionId)id, options->command)) {
       options->given &= ~BIT(id);
       if (render_option_is_text((OptionId)id)) {
         char **text = (char **)((char *)options + render_table[id].at);
@@ -301,6 +316,29 @@ static void take_scene(RenderOptions *options) {
       }
     }
   options->tolerance = standard.tolerance;
+}
+
+/* What of a command line of rays is missing or doesn't go together. NULL: nothing. */
+static const char *find_rays_fault(const RenderOptions *options) {
+  if (!options->rays)
+    return "no rays given: --rays RAYS.csv";
+  if (!options->output && !options->matrix)
+    return "no output given: -o OUT.csv, or --matrix OUT.mtx";
+  if (options->output && !ray_file_is_writable(options->output))
+    return "-o: expected a name that ends with .csv or .npy";
+  if (render_options_given(options, OPTION_BASIS) && !options->matrix)
+    return "--basis: needs --matrix";
+  if (options->matrix && (options->clip_count > 0 || render_options_given(options, OPTION_CLIP_BOX)))
+    return "--matrix: not possible with --clip and --clip-box; begin and end of rays cut them as well";
+  if (options->time && !strcmp(options->time, "all"))
+    return "--time all: expected a single step";
+  if (options->inputs)
+    return "a scene of several inputs: rays are about one step";
+  if (render_options_range(options) == RANGE_SERIES)
+    return "--range series: expected two numbers, LO not above HI, or step";
+  if (render_options_lit(options))
+    return "--shade volume: light in the volume is seen from a camera, and rays have none";
+  return NULL;
 }
 
 /* What of the command line is missing or has no use. -1: nothing, else the exit code. */
@@ -313,6 +351,7 @@ static int check_use(const RenderOptions *options) {
     return cli_usage_error("transfer", "more than one input: '%s' and '%s'", options->inputs[0], options->inputs[1]);
   if (options->command == COMMAND_TRANSFER && options->range_kind == RANGE_SERIES)
     return cli_usage_error("transfer", "--range series: expected two numbers, LO not above HI, or shares");
+  const char *rays = options->command == COMMAND_CAST ? find_rays_fault(options) : NULL;
   if (options->command == COMMAND_CONVERGE && !options->output)
     return cli_usage_error("converge", "no folder for the report given: -o REPORTDIR");
   if (options->command == COMMAND_CONVERGE && options->time && !strcmp(options->time, "all"))
@@ -335,7 +374,7 @@ static int check_use(const RenderOptions *options) {
     return cli_usage_error(command_name(options),
                            "--time %s: files on the command line have no times, only numbers, from 0", options->time);
   if (options->input)
-    return result;
+    return result < 0 && rays ? cli_usage_error("cast", "%s", rays) : result;
   if (!options->refine)
     return cli_usage_error(command_name(options), "no input given");
   const OptionSet used = BIT(OPTION_OUTPUT) | BIT(OPTION_THREADS) | BIT(OPTION_QUIET) | BIT(OPTION_STRICT) |
@@ -388,10 +427,11 @@ static const char *channel_word(int i) {
   return info ? info->name : NULL;
 }
 
-static const char *const *words_of(OptionId id) {
+static const char *const *words_of(RenderCommand command, OptionId id) {
   static const char *presets[COMPLETION_WORDS], *colors[COMPLETION_WORDS], *channels[COMPLETION_WORDS];
   static const char *const integrators[] = {"exact", "midpoint:", "trapezoid:", "gauss:", "table:", NULL};
-  static const char *const ranges[] = {"step", "series", NULL}, *const times[] = {"all", NULL};
+  static const char *const ranges[] = {"step", "series", NULL}, *const times[] = {"all", NULL},
+                           *const of_rays[] = {"length", "error", NULL};
   switch (id) {
   case OPTION_PRESET:
     return completion_words(preset_word, presets);
@@ -400,7 +440,7 @@ static const char *const *words_of(OptionId id) {
   case OPTION_INTEGRATOR:
     return integrators;
   case OPTION_CHANNELS:
-    return completion_words(channel_word, channels);
+    return command == COMMAND_CAST ? of_rays : completion_words(channel_word, channels);
   case OPTION_RANGE:
     return ranges;
   case OPTION_TIME:
@@ -418,7 +458,7 @@ static int complete(RenderCommand command, CompletionOption list[COMPLETION_OPTI
   for (int i = 0; i + 1 < count; i++) { /* but for the last, --help */
     if (render_table[ids[i]].kind == KIND_PATH || ids[i] == OPTION_PRESET)
       list[i].kind = COMPLETION_PATH;
-    list[i].words = words_of(ids[i]);
+    list[i].words = words_of(command, ids[i]);
   }
   return count;
 }
@@ -433,4 +473,8 @@ int completion_of_transfer(CompletionOption list[COMPLETION_OPTIONS]) {
 
 int completion_of_converge(CompletionOption list[COMPLETION_OPTIONS]) {
   return complete(COMMAND_CONVERGE, list);
+}
+
+int completion_of_cast(CompletionOption list[COMPLETION_OPTIONS]) {
+  return complete(COMMAND_CAST, list);
 }

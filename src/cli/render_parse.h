@@ -8,6 +8,6 @@
 /* Reads the command line and the scene file it names. -1 to go on, else the exit code. */
 int render_options_parse(RenderOptions *options, int argc, char **argv);
 
-extern const char render_help[], converge_help[], transfer_help[];
+extern const char render_help[], converge_help[], transfer_help[], cast_help[];
 
 #endif

@@ -124,6 +124,7 @@ static int read_field(Stage *stage, const RenderOptions *options, const int64_t 
   desc.cell_to_point = options->cell_to_point;
   desc.no_displacement = options->no_displacement;
   memcpy(desc.stretch, options->stretch, sizeof desc.stretch);
+  desc.sources = options->matrix != NULL;
   desc.only = stage->rows.second ? NULL : only_array(stage, options);
   const char *path = options->input;
   int64_t file = 0;

@@ -5,10 +5,10 @@
 #define TC_GATHER_GATHER_H
 
 #include "gather/emission.h"
-#include "gather/length.h"
 #if !TC_SINGLE
 #include "gather/coefficients.h"
 #include "gather/count.h"
+#include "gather/trace.h"
 #include "gather/value.h"
 #endif
 #if TC_LANES == 1
@@ -17,15 +17,15 @@
 
 /* The name of each gatherer, and the type of its state. */
 #if TC_SINGLE
-#define TC_GATHERERS(GATHERER) GATHERER(emission, TcEmission) GATHERER(length, TcLength)
+#define TC_GATHERERS(GATHERER) GATHERER(emission, TcEmission)
 #elif TC_LANES > 1
 #define TC_GATHERERS(GATHERER)                                                                                         \
   GATHERER(emission, TcEmission)                                                                                       \
-  GATHERER(length, TcLength) GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(count, TcCount)
+  GATHERER(trace, TcTrace) GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(count, TcCount)
 #else
 #define TC_GATHERERS(GATHERER)                                                                                         \
   GATHERER(emission, TcEmission)                                                                                       \
-  GATHERER(length, TcLength)                                                                                           \
+  GATHERER(trace, TcTrace)                                                                                             \
   GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(count, TcCount) GATHERER(sampled, TcSampled)
 #endif
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Gathers the length of rays in cells. Where cells overlap, each of them counts. */
+/* The length of rays in cells, for gatherers. Where cells overlap, each of them counts. */
 #ifndef TC_GATHER_LENGTH_H
 #define TC_GATHER_LENGTH_H
 
@@ -22,15 +22,5 @@ TC_INLINE void tc_length_segment(const unsigned on, const TcGatherJob *job, TcLe
   length->rest = (sum - length->sum) - more;
   length->sum = sum;
 }
-
-TC_INLINE void tc_length_end(const unsigned on, const TcGatherJob *job, TcLength *length, const TcEnding *ending,
-                             double (*sums)[TC_LANES]) {
-  (void)on, (void)job, (void)ending;
-  for (int l = 0; l < TC_LANES; ++l)
-    sums[0][l] = (double)TC_AT(length->sum, l);
-}
-
-#define tc_length_enter(on, job, length, mask, walk)       ((void)0)
-#define tc_length_complete(on, job, length, active, steps) tc_none()
 
 #endif

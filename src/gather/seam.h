@@ -16,7 +16,7 @@
  * - end(on, job, state, ending, sums): hands out what has been gathered, TcGatherJob.sums numbers for each lane. With
  *   TC_BOUND the last of them is a bound on the error of the others.
  *
- * A new gatherer is a file like length.h, a line in gather.h and a row in kernels.def. */
+ * A new gatherer is a file like count.h, a line in gather.h and a row in kernels.def. */
 #ifndef TC_GATHER_SEAM_H
 #define TC_GATHER_SEAM_H
 
@@ -28,6 +28,7 @@
 #include "volume/coefficients.h"
 #include "walk/lights.h"
 #include "walk/packet.h"
+#include "walk/trail.h"
 
 /* What gatherers are given; each of them uses a part of it. */
 typedef struct TcGatherJob {
@@ -41,6 +42,7 @@ typedef struct TcGatherJob {
   TetcastBlend blend;                 /* which number is made of the values along a ray */
   const TcSurfaces *surfaces;         /* with TC_SURFACES: isosurfaces, slices and the boundary */
   const TcLights *lights;             /* with TC_LIT: the light in the volume */
+  TcTrail *trail;                     /* where cells that are crossed are noted; NULL: nowhere */
   bool to_the_end;                    /* of coefficients: opaque rays go on, as what lies behind is wanted too */
   double rounding;                    /* with TC_BOUND: the rounding of an interpolated value, relative to it */
   int exponent;                       /* the volume's unit of length is 2^exponent of the mesh's */

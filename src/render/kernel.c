@@ -358,6 +358,7 @@ static State *prepare(const TcJob *job, TcWorker *worker) {
                              .coefficients = job->coefficients,
                              .surfaces = job->surfaces,
                              .lights = job->lights,
+                             .trail = worker->trail,
                              .blend = job->blend,
                              .to_the_end = job->to_the_end,
                              .exponent = job->shell->volume->exponent,
@@ -676,6 +677,10 @@ static void place_cast(Cast *cast) {
       placed->lanes |= 1U << l;
   }
   place_rays(cast->job, cast->ground, NULL, cast->sums, placed);
+  TC_EACH_LANE { /* where the ray begins or ends by itself */
+    if (TC_AT(lines->begin, l) != 0 || TC_AT(lines->end, l) < INFINITY)
+      TC_AT(placed->doubt, l) += cast->job->interval_error;
+  }
 }
 
 static bool next_of_cast(void *user, TcQueue *queue) {

@@ -15,6 +15,7 @@
 #include "walk/ray.h"
 #include "walk/screen.h"
 #include "walk/surfaces.h"
+#include "walk/trail.h"
 
 enum {
   TC_TILE = 16,     /* the most pixels along a side of the tile that a kernel renders at once */
@@ -70,6 +71,7 @@ typedef struct TcWorker {
   TcHits hits[TC_HIT_LISTS];
   void *state;         /* TcIsaKernels.state_size() bytes, aligned to 64, cleared when the worker begins */
   void *precise_state; /* single precision: the same for the kernels with which rays are walked again */
+  TcTrail *trail;      /* where TC_KERNEL_trace notes the cells that are crossed; NULL: nowhere */
   int64_t segments;    /* the number of cells crossed */
   int64_t lost;        /* the number of rays whose walk found no way out of a cell */
   int64_t again;       /* the number of rays that were walked again */

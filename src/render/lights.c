@@ -163,7 +163,7 @@ static TetcastStatus build_open(const TetcastScene *scene, TetcastIsa isa, int w
   memset(open.inside, 0, (size_t)scene->volume->vertex_count * sizeof *open.inside);
   Insides insides = {scene->volume, open.inside};
   tc_volume_each_cell(scene->volume, look_inside, &insides);
-  tc_job_of_opacity(scene, &open.job);
+  tc_job_of_opacity(scene, &scene->prepared->scaled->pieces, &open.job);
   const bool one_by_one = open.job.one_lane || scene->volume->traversal == TETCAST_TRAVERSAL_FACES;
   open.kernels = tc_kernels_for(one_by_one ? TETCAST_ISA_SCALAR : isa);
   const TetcastStatus status = cast_all(&open);

@@ -109,8 +109,7 @@ void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job) {
   job->shell = &scene->prepared->shell;
 }
 
-void tc_job_of_opacity(const TetcastScene *scene, TcJob *job) {
-  const TcPieces *pieces = &scene->prepared->scaled->pieces;
+void tc_job_of_opacity(const TetcastScene *scene, const TcPieces *pieces, TcJob *job) {
   job->shell = &scene->prepared->shell;
   job->values = scene->values;
   job->pieces = pieces;
@@ -349,9 +348,8 @@ static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *de
 /* Sets up the count of cells: as the picture, but of all the mesh and without light. */
 static void plan_count(TcRender *render) {
   TcJob *count = &render->count;
-  bool one_lane;
   *count = render->job.precise ? render->precise : render->job; /* it takes double precision */
-  count->kernel = choose_row("count", TC_CELLS, &one_lane);
+  count->kernel = TC_KERNEL_count;
   count->shell = &render->scene->volume->shell;
   count->pieces = NULL;
   count->coefficients = NULL;
@@ -408,11 +406,8 @@ static TetcastStatus run(TcRender *render, const TetcastRenderDesc *desc, Tetcas
   return status;
 }
 
-/* Surfaces, light in the volume and a transfer function's second dimension, as far as the scene has them. Of the
- * kernels, one has white light alone, one surfaces, one the second dimension; what has more than one of these, or light
- * of a colour, takes the kernel that has all. */
-static TetcastStatus find_looks(const TetcastScene *scene, const TetcastRenderDesc *desc, bool depth, bool normal,
-                                TcRender *render) {
+TetcastStatus tc_find_looks(const TetcastScene *scene, const TetcastRenderDesc *desc, bool depth, bool normal,
+                            TcRender *render) {
   TcJob *job = &render->job;
   const bool surfaces = depth || tc_scene_has_surfaces(scene), lit = tc_scene_is_lit(scene),
              rows = scene->row_count > 0;
@@ -440,7 +435,7 @@ static TetcastStatus find_looks(const TetcastScene *scene, const TetcastRenderDe
   return status;
 }
 
-static void forget_looks(TetcastContext *context, TcRender *render) {
+void tc_forget_looks(TetcastContext *context, TcRender *render) {
   tc_lights_clear(context, &render->lights);
   tc_second_clear(context, &render->second);
 }
@@ -470,12 +465,12 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   if (!status)
     status = tc_scene_prepare(scene);
   if (!status && !scene->coefficients && !scene->blend)
-    status = find_looks(scene, desc, depth, normal, &render);
+    status = tc_find_looks(scene, desc, depth, normal, &render);
   TcSampler *sampler = NULL;
   if (!status && !exact)
     status = tc_sampler_create(context, desc->integrator, desc->integrator_n, &sampler);
   if (status) {
-    forget_looks(context, &render);
+    tc_forget_looks(context, &render);
     return status;
   }
   job->sampler = sampler;
@@ -501,7 +496,7 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
     status = run(&render, desc, &sum);
   keep_vertices(scene, job, job->precise != NULL);
   tc_sampler_destroy(sampler);
-  forget_looks(context, &render);
+  tc_forget_looks(context, &render);
   if (!measured || desc->adaptive_coarse > 0)
     sum.error = NAN;
   if (!status && stats)

@@ -144,8 +144,9 @@ TetcastStatus tc_scene_scale(const TetcastScene *scene, const TetcastTransferFun
 /* Sets what a kernel needs to know of the scene: the shell, the field, the transfer function, coefficients or blend
  * mode. `bound` tells whether a bound on the error is wanted. */
 void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job);
-/* The same for rays of which only the opacity is wanted, through the transfer function alone. */
-void tc_job_of_opacity(const TetcastScene *scene, TcJob *job);
+/* The same for rays of which only the opacity is wanted, through a transfer function alone: the scene's, or another one
+ * of its extinction times something. */
+void tc_job_of_opacity(const TetcastScene *scene, const TcPieces *pieces, TcJob *job);
 /* The same for a volume without a scene, of which everything is visible, and a transfer function in its units. */
 void tc_job_of(const TetcastVolume *volume, const TcRows *values, const TcPieces *pieces, TcJob *job);
 /* The kernels in double precision for the largest instruction set that this processor has and that `most` allows. */

@@ -42,6 +42,13 @@ static inline TcGathered tc_render_gathered(const TcRender *render) {
   return gathered;
 }
 
+/* Surfaces, light in the volume and a transfer function's second dimension, as far as the scene has them, for
+ * tc_forget_looks(). Of the kernels, one has white light alone, one surfaces, one the second dimension; what has more
+ * than one of these, or light of a colour, takes the kernel that has all. */
+TetcastStatus tc_find_looks(const TetcastScene *scene, const TetcastRenderDesc *desc, bool depth, bool normal,
+                            TcRender *render);
+void tc_forget_looks(TetcastContext *context, TcRender *render);
+
 /* The number made of the bits 0, 2, 4, … of i: the place along one axis of the i-th square of Morton's curve. */
 static inline int64_t tc_even_bits(int64_t i) {
   int64_t result = 0;

@@ -100,6 +100,10 @@ TC_INLINE void tc_packet_expect(const TcGround *ground, TcPacket *p) {
     if (TC_SINGLE || ground->screen)
       __builtin_prefetch((const TcReal *)ground->screen->vertices + 4 * (size_t)next);
   }
+#if !TC_SINGLE
+  if (TC_UNLIKELY(!ground->screen))
+    tc_points_expect(ground, p->vertex);
+#endif
   TC_IN_MEMORY(p->vertex);
 }
 

@@ -92,29 +92,44 @@ TC_INLINE void tc_shear(const TcRays *rays, const TcVec component[3], TcLanePoin
   p->d = z * rays->inverse_z - rays->rest_z;
 }
 
+/* The number that follows the last vertex is there (volume.h), so that four may be read at once. */
 TC_NOINLINE void tc_points_in_ray_space(const TcGround *ground, const TcRays *rays, const uint32_t id[TC_LANES],
                                         TcLanePoints *p) {
   const TetcastVolume *volume = ground->shell->volume;
-  const int kx = rays->kz == 2 ? 0 : rays->kz + 1, ky = rays->kz == 0 ? 2 : rays->kz - 1;
-  TcVec component[3], s = tc_set(0);
+  TcVec axis[4], s = tc_set(0);
   if (volume->positions_are_double) {
-    for (int l = 0; l < TC_LANES; ++l) {
-      const double *from = (const double *)volume->positions + 3 * (size_t)id[l];
-      TC_AT(component[0], l) = from[kx], TC_AT(component[1], l) = from[ky], TC_AT(component[2], l) = from[rays->kz];
-    }
+    const double *at[TC_LANES];
+    TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) at[l] = (const double *)volume->positions + 3 * (size_t)id[l];
+    tc_load_records(at, axis);
   } else {
-    for (int l = 0; l < TC_LANES; ++l) {
-      const float *from = (const float *)volume->positions + 3 * (size_t)id[l];
-      TC_AT(component[0], l) = (double)from[kx], TC_AT(component[1], l) = (double)from[ky],
-                          TC_AT(component[2], l) = (double)from[rays->kz];
-    }
+    const float *at[TC_LANES];
+    TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) at[l] = (const float *)volume->positions + 3 * (size_t)id[l];
+    tc_load_float_records(at, axis);
   }
+  const int kz = rays->kz;
+  const TcVec component[3] = {kz == 2   ? axis[0]
+                              : kz == 1 ? axis[2]
+                                        : axis[1],
+                              kz == 2   ? axis[1]
+                              : kz == 1 ? axis[0]
+                                        : axis[2],
+                              kz == 2   ? axis[2]
+                              : kz == 1 ? axis[1]
+                                        : axis[0]};
   if (ground->values && ground->values->association == TETCAST_POINT) {
     for (int l = 0; l < TC_LANES; ++l)
       TC_AT(s, l) = tc_rows_value(ground->values, id[l], 0);
   }
   tc_shear(rays, component, p);
   p->s = s;
+}
+
+/* Has the vertices fetched that lanes are about to load. */
+TC_NOINLINE void tc_points_expect(const TcGround *ground, const uint32_t id[TC_LANES]) {
+  const TetcastVolume *volume = ground->shell->volume;
+  const size_t size = 3 * (volume->positions_are_double ? sizeof(double) : sizeof(float));
+  TC_UNROLLED for (int l = 0; l < TC_LANES; ++l)
+      __builtin_prefetch((const char *)volume->positions + size * (size_t)id[l]);
 }
 
 /* Loads one vertex for all lanes, without its scalar. */

@@ -185,7 +185,7 @@ static void caster_begin(Caster *caster, const Soup *soup) {
   for (int i = 0; i < 2; ++i) {
     caster->volume[i] =
         volume_of(caster->fixture.context, caster->mesh, i ? TETCAST_TRAVERSAL_FACES : TETCAST_TRAVERSAL_SHELL);
-    caster->job[i] = (TcJob){.kernel = TC_KERNEL_length, .shell = &caster->volume[i]->shell, .sums = 1};
+    caster->job[i] = (TcJob){.kernel = TC_KERNEL_trace, .shell = &caster->volume[i]->shell, .sums = 1};
     for (int k = 0; k < ALL_KERNELS; ++k) {
       assert_true(
           tc_worker_begin(caster->fixture.context, all_kernels[k].kernels, &caster->job[i], &caster->workers[i][k]));

@@ -48,6 +48,9 @@ void job_features(const Job *job);
 /* What the field's statistics and quantiles cost, and finding isosurfaces with VTK, beside features. */
 void job_numbers(const Job *job);
 
+/* Any rays beside a frame, and the cells that they cross. */
+void job_rays(const Job *job);
+
 /* Writes the mesh as .vtu; reads it; renders it with the command. */
 void job_file(const Job *job);
 

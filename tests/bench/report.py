@@ -217,8 +217,8 @@ def kernels(results):
             yield (scene, case, *(f"{row['isa']} {number(per_cell(row))}" for row in rows))
 
 
-def features(results):
-    rows = results.all(task='feature')
+def features(results, task='feature'):
+    rows = results.all(task=task)
     base = next(iter(rows), None)
     for row in rows:
         yield (row['scene'], row['case'], number(row['cpu_s']), number(per_cell(row)),
@@ -272,6 +272,8 @@ def write(results, path, figures):
         file.writelines(isosurfaces(results))
         file.write('## Statistics\n\n')
         table(file, ('scene', 'tetrahedra', 'what', 's', 'ns a tet'), numbers(results))
+        file.write('## Any rays\n\n')
+        table(file, ('scene', 'rays', 's', 'ns a cell', 'against the first'), features(results, 'rays'))
         file.write('## Other measurements\n\n')
         table(file, ('scene', 'what', 'case', 'pixels', 'of', 'threads', 'wall, s', 'CPU, s', 'error'), others(results))
 

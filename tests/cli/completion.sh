@@ -26,8 +26,8 @@ offers() {
   [ "$output" = "$expected" ] || fail "'$output' instead of '$expected': $*"
 }
 offers render re
-offers 'converge completion' c
-offers 'render converge transfer info mesh completion' help ''
+offers 'converge cast completion' c
+offers 'render converge transfer cast info mesh completion' help ''
 offers 'bash zsh fish' completion ''
 offers '--preset' render --pre
 offers 'viridis' render --preset v
@@ -42,7 +42,7 @@ offers '' render --output a # files, by readline's own default
 offers '' render x
 
 # Every option that is offered is taken, and is in the manual; every one that the help has is offered, in all shells.
-for command in render converge transfer info mesh; do
+for command in render converge transfer cast info mesh; do
   completes $command --
   offered=$(tr ' ' '\n' <<<"$output" | sort)
   helped=$("$tetcast" $command --help | grep -oE -- '(^|[ ,])--[a-z][a-z-]+' | tr -d ' ,' | sort -u)

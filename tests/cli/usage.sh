@@ -8,7 +8,7 @@ contains 'Embree [34]\.'
 contains 'adapters:'
 accept --help
 contains 'render'
-for command in render converge info mesh; do
+for command in render converge cast info mesh; do
   accept $command --help
   contains "Usage: tetcast $command"
   contains 'Example'
@@ -20,7 +20,7 @@ accept -V
 contains '^tetcast [0-9]'
 accept help
 contains 'Usage: tetcast COMMAND'
-for command in render converge info mesh completion; do
+for command in render converge cast info mesh completion; do
   accept help $command
   contains "Usage: tetcast $command"
 done

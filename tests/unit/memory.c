@@ -338,6 +338,61 @@ static void gauss(Run *run) {
   whole_picture(run, &(Kind){.integrator = TETCAST_INTEGRATOR_GAUSS});
 }
 
+/* ── rays ── */
+
+static bool note_trace(void *user, const TetcastTrace *trace) {
+  note(user, trace->offsets, (size_t)trace->count * sizeof *trace->offsets);
+  note(user, trace->crossings, (size_t)trace->offsets[trace->count] * sizeof *trace->crossings);
+  return true;
+}
+
+/* What any rays gather, and what they cross. */
+static void rays(Run *run) {
+  enum { RAYS = 300 };
+  TetcastContext *context = run->fixture.context;
+  Cube cube = cube_create(3, 0.3);
+  double lines[RAYS][6], numbers[RAYS * 7];
+  uint64_t seed = 9;
+  for (int i = 0; i < RAYS * 6; ++i)
+    lines[i / 6][i % 6] = i % 6 < 3 ? uniform(&seed) : uniform(&seed) - 0.5;
+  TetcastMeshDesc mesh_desc = tetcast_mesh_desc_default();
+  mesh_desc.vertices = (TetcastArray){cube.vertices, TETCAST_TYPE_FLOAT64, cube.vertex_count, 0};
+  mesh_desc.tetrahedra = (TetcastArray){cube.cells, TETCAST_TYPE_INT64, cube.cell_count, 0};
+  TetcastMesh *mesh = (TetcastMesh *)&cube;
+  MAKE(run, mesh, tetcast_mesh_create(context, &mesh_desc, &mesh));
+  TetcastVolume *volume = (TetcastVolume *)&cube;
+  MAKE(run, volume, tetcast_volume_create(context, mesh, NULL, &volume));
+  TetcastRays list = tetcast_rays_default();
+  list.origins = (TetcastArray){lines[0], TETCAST_TYPE_FLOAT64, RAYS, sizeof lines[0]};
+  list.directions = (TetcastArray){lines[0] + 3, TETCAST_TYPE_FLOAT64, RAYS, sizeof lines[0]};
+  uint64_t before = run->sum;
+  const TetcastStatus traced = tetcast_volume_trace(volume, &list, NULL, note_trace, run);
+  if (again(run, traced, "tetcast_volume_trace")) {
+    run->sum = before;
+    assert_int_equal(tetcast_volume_trace(volume, &list, NULL, note_trace, run), TETCAST_OK);
+  }
+  TetcastField *field = (TetcastField *)&cube;
+  TetcastFieldDesc desc = tetcast_field_desc_default();
+  desc.values = (TetcastArray){cube.values, TETCAST_TYPE_FLOAT64, cube.vertex_count, 0};
+  MAKE(run, field, tetcast_field_create(context, &desc, &field));
+  TetcastScene *scene = (TetcastScene *)&cube;
+  MAKE(run, scene, tetcast_scene_create(context, volume, &scene));
+  CALL(run, tetcast_scene_set_field(scene, field));
+  TetcastTransferFunction *transfer = (TetcastTransferFunction *)&cube;
+  narrow_transfer(run, &transfer, false);
+  CALL(run, tetcast_scene_set_transfer_function(scene, transfer));
+  const TetcastCastResult result = {
+      .color = numbers, .optical_depth = numbers + 4 * RAYS, .length = numbers + 5 * RAYS, .error = numbers + 6 * RAYS};
+  CALL(run, tetcast_scene_cast(scene, &list, NULL, &result, NULL));
+  note(run, numbers, sizeof numbers);
+  tetcast_scene_destroy(&scene);
+  tetcast_transfer_function_destroy(&transfer);
+  tetcast_field_destroy(&field);
+  tetcast_volume_destroy(&volume);
+  tetcast_mesh_destroy(&mesh);
+  cube_destroy(&cube);
+}
+
 /* ── all of them ── */
 
 static const struct {
@@ -359,6 +414,7 @@ static const struct {
     {"rows of faces", rows_of_faces},
     {"table", table},
     {"gauss", gauss},
+    {"rays", rays},
 };
 
 static void any_allocation_may_fail(void **state) {

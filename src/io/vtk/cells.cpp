@@ -196,7 +196,7 @@ void cut_all(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, 
     desc.rational = numbers_of(weights, &rational);
   }
   desc.subdivision = options.subdivision;
-  desc.sources = grid->GetCellData()->GetNumberOfArrays() > 0;
+  desc.sources = options.sources || grid->GetCellData()->GetNumberOfArrays() > 0;
 
   // Messages of the library shall begin with the name of the file, so a context of our own catches them.
   std::string words;

@@ -38,7 +38,8 @@ struct Tetrahedra {
 bool is_volume(int type); // whether cells of this type of VTK's become tetrahedra
 
 struct CutOptions {
-  int subdivision = 0; // as in TetcastCellsDesc
+  int subdivision = 0;  // as in TetcastCellsDesc
+  bool sources = false; // are wanted whatever the arrays
   int threads = 0;
 };
 

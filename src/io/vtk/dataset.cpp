@@ -234,6 +234,7 @@ static void read_dataset(TetcastContext *context, const char *path, const Tetcas
     const Capture capture; // Cutting cells may make VTK complain as well.
     CutOptions options;
     options.subdivision = desc.subdivision;
+    options.sources = desc.sources;
     options.threads = tetcast_context_threads(context);
     make_tetrahedra(path, grid, dataset->points, options, &dataset->tetrahedra);
   }
@@ -364,6 +365,10 @@ int64_t tetcast_dataset_step(const TetcastDataset *dataset) {
 
 TetcastCutInfo tetcast_dataset_cut(const TetcastDataset *dataset) {
   return dataset ? dataset->tetrahedra.info : TetcastCutInfo();
+}
+
+TetcastArray tetcast_dataset_sources(const TetcastDataset *dataset) {
+  return dataset ? dataset->tetrahedra.source : TetcastArray();
 }
 
 TetcastStatus tetcast_dataset_mesh(const TetcastDataset *dataset, TetcastMesh **mesh) {
