@@ -252,8 +252,11 @@ static bool project_some(void *data, int64_t begin, int64_t end, int worker) {
 /* Whether projecting all vertices once is faster than moving them into the space of each ray that meets them.
  * Projecting one vertex takes about as long as a dozen steps of a ray become faster by it, so it doesn't pay for small
  * pictures of large meshes, nor where little of the mesh is seen. The number of steps is estimated as if the mesh were
- * a cube, of which each ray crosses half as many cells as ∛cell_count. */
+ * a cube, of which each ray crosses half as many cells as ∛cell_count. Parts of a larger mesh must not differ in it, as
+ * rays that pass from one to another would pass edges on different sides. */
 static bool worth_projecting(const TetcastScene *scene, int64_t rays, const TcJob *job) {
+  if (scene->volume->is_part)
+    return true;
   const double cells = (double)scene->volume->cell_count, crossings = 0.5 * (double)rays * cbrt(cells);
   const double share = job->shell->visible ? (double)job->shell->visible_cells / cells : 1;
   return share * crossings > 3 * (double)scene->volume->vertex_count;
