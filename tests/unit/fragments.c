@@ -5,7 +5,7 @@
 
 /* ── crossings ── */
 
-enum { SIDE = 16 };
+enum { SIDE = 17, CAMERAS = 50 };
 
 /* The lengths of rays in all parts, in which extinction is 1. */
 static void add_lengths(TetcastContext *context, const Partition *partition, const TetcastCamera *camera,
@@ -33,24 +33,20 @@ static void add_lengths(TetcastContext *context, const Partition *partition, con
 }
 
 /* Along an axis, each ray through a vertex of the grid, a middle of an edge or of a face, or beyond the mesh, and in
- * planes of faces; along diagonals, where many vertices lie behind each other; from a vertex's place, to vertices. */
+ * planes of faces; along diagonals, where many vertices lie behind each other; then to vertices, from outside and from
+ * other vertices. The ray in the middle goes to the target. */
 static TetcastCamera aimed_camera(int i, const Cube *cube) {
-  if (i < 3) { /* the pixels are 1 / 8 wide, and their middles lie at multiples of it */
-    const double shift = 1.0 / 16;
-    TetcastCamera camera = parallel(0.5, 0.5, 0.5, 2);
+  if (i < 3) {
+    TetcastCamera camera = parallel(0.5, 0.5, 0.5, SIDE / 8.0);
     camera.eye[i] = 3;
     camera.up[0] = i == 1, camera.up[1] = i != 1;
-    for (int k = 0; k < 3; ++k) {
-      camera.eye[k] += k == i ? 0 : shift;
-      camera.target[k] += k == i ? 0 : shift;
-    }
     return camera;
   }
   if (i < 6)
     return parallel(i == 3 ? 0.5 : 3, 3, 3 - 5 * (i == 5), 2);
-  const double *eye = cube->vertices + 3 * (i == 6 ? 0 : cube->vertex_count / 2),
-               *target = cube->vertices + 3 * (cube->vertex_count / 2 + 7);
-  return camera_of(eye[0], eye[1], eye[2] + (i == 8 ? 2 : 0), target[0], target[1], target[2]);
+  const double *eye = cube->vertices + 3 * (i * 7 % cube->vertex_count),
+               *target = cube->vertices + 3 * (i * 31 % cube->vertex_count);
+  return camera_of(eye[0], eye[1], eye[2] + (i % 3 ? 2 : 0), target[0], target[1], target[2]);
 }
 
 static void crossings_of_parts_are_those_of_the_whole(void **state) {
@@ -62,7 +58,7 @@ static void crossings_of_parts_are_those_of_the_whole(void **state) {
     Partition whole = partition_of(fixture.context, &cube, CUT_BOXES, 1);
     for (int cut = 0; cut < CUTS; ++cut) {
       Partition parts = partition_of(fixture.context, &cube, (Cut)cut, cut == 1 ? 5 : 8);
-      for (int i = 0; i < 9; ++i) {
+      for (int i = 0; i < CAMERAS; ++i) {
         const TetcastCamera camera = aimed_camera(i, &cube);
         static double one[SIDE * SIDE], all[SIDE * SIDE];
         add_lengths(fixture.context, &whole, &camera, one);
