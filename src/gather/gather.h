@@ -9,6 +9,7 @@
 #if !TC_SINGLE
 #include "gather/coefficients.h"
 #include "gather/count.h"
+#include "gather/trail.h"
 #include "gather/value.h"
 #endif
 #if TC_LANES == 1
@@ -21,12 +22,14 @@
 #elif TC_LANES > 1
 #define TC_GATHERERS(GATHERER)                                                                                         \
   GATHERER(emission, TcEmission)                                                                                       \
-  GATHERER(length, TcLength) GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(count, TcCount)
+  GATHERER(length, TcLength)                                                                                           \
+  GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(count, TcCount) GATHERER(trail, TcTrail)
 #else
 #define TC_GATHERERS(GATHERER)                                                                                         \
   GATHERER(emission, TcEmission)                                                                                       \
   GATHERER(length, TcLength)                                                                                           \
-  GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(count, TcCount) GATHERER(sampled, TcSampled)
+  GATHERER(groups, TcGroups)                                                                                           \
+  GATHERER(value, TcValue) GATHERER(count, TcCount) GATHERER(trail, TcTrail) GATHERER(sampled, TcSampled)
 #endif
 
 enum {
