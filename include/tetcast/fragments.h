@@ -28,10 +28,12 @@ extern "C" {
 typedef struct TetcastFragment {
   /* Its pixel, row · width + column, rows from the top. */
   int64_t pixel;
-  /* Where it begins and ends, in the mesh's unit of length along the ray, from the ray's point that is nearest to the
-   * middle of the volume's bounds, towards the eye negative. (So places don't lose digits to a distant eye. For the
-   * distance from where the ray starts, add (middle − start) · direction.) */
-  double begin, end;
+  /* Where it begins, in the mesh's unit of length along the ray, from the ray's point that is nearest to the middle of
+   * the volume's bounds, towards the eye negative. So places don't lose digits to a distant eye. For the distance from
+   * where the ray starts, add (middle − start) · direction. */
+  double begin;
+  /* Where it ends, likewise. */
+  double end;
   /* ∫ κ dt, above 0; opacity is 1 − exp(−optical_depth). */
   double optical_depth;
   /* Red, green, blue, premultiplied by its opacity. */
@@ -42,6 +44,7 @@ typedef struct TetcastFragment {
 typedef struct TetcastFragmentList {
   /* [count]; NULL is allowed where count is 0. */
   const TetcastFragment *data;
+  /* How many there are. */
   int64_t count;
 } TetcastFragmentList;
 
