@@ -23,6 +23,9 @@ TetcastStatus tc_fragments_create(TetcastContext *context, TetcastFragments **ou
 void tc_fragments_destroy(TetcastFragments *fragments) {
   if (!fragments)
     return;
+  for (int i = 0; i < fragments->list_count; ++i)
+    tc_fragment_list_clear(&fragments->lists[i]);
+  tc_release(fragments->context, fragments->lists);
   tc_release(fragments->context, fragments->data);
   tc_release(fragments->context, fragments);
 }
@@ -102,16 +105,40 @@ static bool sort_pixels(void *data, int64_t begin, int64_t end, int worker) {
   return true;
 }
 
-TetcastStatus tc_fragments_take(TcRender *render, int threads, TetcastStatus status) {
+void tc_fragments_lend(TcRender *render, int threads) {
+  const TetcastFragments *result = render->fragments->result;
+  for (int i = 0; i < threads && i < result->list_count; ++i) {
+    render->workers[i].worker.fragments = result->lists[i];
+    result->lists[i] = (TcFragmentList){.context = result->context};
+  }
+}
+
+/* Keeps the workers' memory for the next picture; where there is no place to note it, workers free it. */
+static void take_back(TcRender *render, int threads) {
+  TetcastFragments *result = render->fragments->result;
+  if (threads > result->list_count) {
+    TcFragmentList *lists = tc_allocate(result->context, threads, sizeof *lists);
+    if (!lists)
+      return;
+    for (int i = 0; i < result->list_count; ++i)
+      tc_fragment_list_clear(&result->lists[i]);
+    tc_release(result->context, result->lists);
+    result->lists = lists;
+    result->list_count = threads;
+  }
+  for (int i = 0; i < threads; ++i) {
+    TcFragmentList *list = &render->workers[i].worker.fragments;
+    result->lists[i] = *list;
+    result->lists[i].count = 0;
+    result->lists[i].out_of_memory = false;
+    *list = (TcFragmentList){.context = result->context};
+  }
+}
+
+static TetcastStatus take_fragments(TcRender *render, int threads) {
   TetcastFragments *result = render->fragments->result;
   TetcastContext *context = result->context;
   const int64_t pixels = render->frame->width * render->frame->height;
-  for (int i = 0; i < threads; ++i) {
-    if (render->workers[i].worker.fragments.out_of_memory)
-      return tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: fragments");
-  }
-  if (status)
-    return status;
   int64_t count = 0;
   for (int64_t i = 0; i < pixels; ++i) {
     const int64_t of_pixel = render->fragments->place[i];
@@ -130,6 +157,19 @@ TetcastStatus tc_fragments_take(TcRender *render, int threads, TetcastStatus sta
   tc_parallel_for(context, pixels, GRAIN, sort_pixels, render->fragments, NULL);
   result->count = count;
   return TETCAST_OK;
+}
+
+TetcastStatus tc_fragments_take(TcRender *render, int threads, TetcastStatus status) {
+  for (int i = 0; i < threads; ++i) {
+    if (render->workers[i].worker.fragments.out_of_memory)
+      status = TETCAST_ERROR_MEMORY;
+  }
+  if (status == TETCAST_ERROR_MEMORY)
+    tc_error(render->scene->context, status, "out of memory: fragments");
+  if (!status)
+    status = take_fragments(render, threads);
+  take_back(render, threads);
+  return status;
 }
 
 TetcastStatus tc_scene_render_fragments(const TetcastScene *scene, const TetcastCamera *camera,

@@ -9,6 +9,8 @@ struct TetcastFragments {
   TetcastContext *context;
   TetcastFragment *data; /* [capacity] */
   int64_t count, capacity;
+  TcFragmentList *lists; /* [list_count]: memory for the workers of the next picture */
+  int list_count;
 };
 
 /* The fragments of a picture that is being made. */
@@ -22,7 +24,10 @@ void tc_fragments_sort(TetcastFragment *fragments, int64_t count);
 
 /* Renders a tile: the worker's list grows by its fragments. False if memory has run out. */
 bool tc_fragments_tile(const TcRender *render, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorking *working);
-/* Once all tiles are rendered, with `status`: puts all workers' fragments together, pixel by pixel. */
+/* Before the first tile: lends the workers memory of the picture before, if there is any. */
+void tc_fragments_lend(TcRender *render, int threads);
+/* Once all tiles are rendered, with `status`: puts all workers' fragments together, pixel by pixel, and takes their
+ * memory back. */
 TetcastStatus tc_fragments_take(TcRender *render, int threads, TetcastStatus status);
 
 TetcastStatus tc_fragments_create(TetcastContext *context, TetcastFragments **fragments);

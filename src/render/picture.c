@@ -400,6 +400,8 @@ static TetcastStatus run(TcRender *render, const TetcastRenderDesc *desc, Tetcas
     ok = ok && w->sums && (w->cells || !render->counted);
   }
   TetcastStatus status = TETCAST_OK;
+  if (ok && render->fragments)
+    tc_fragments_lend(render, threads);
   if (!ok)
     status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: workers");
   else if (desc->adaptive_coarse > 0)
