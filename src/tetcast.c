@@ -335,6 +335,20 @@ TetcastVolumeDesc tetcast_volume_desc_default(void) {
   return (TetcastVolumeDesc){.cookie = TC_COOKIE};
 }
 
+/* Whether the bounds of a whole are around a part of it. */
+static TetcastStatus check_bounds(TetcastContext *context, const TetcastMesh *mesh, const double bounds[6]) {
+  for (int k = 0; k < 3; ++k) {
+    const double low = bounds[2 * k], high = bounds[2 * k + 1];
+    if (!(low >= -1e300 && low <= high && high <= 1e300))
+      return ARGUMENT(context, "bounds from %g to %g in %c: must ascend, within 1e300", low, high, "xyz"[k]);
+    if (mesh->bounds[2 * k] >= low && mesh->bounds[2 * k + 1] <= high)
+      continue;
+    return ARGUMENT(context, "bounds from %g to %g in %c: the mesh reaches from %g to %g", low, high, "xyz"[k],
+                    mesh -> bounds[2 * k], mesh -> bounds[2 * k + 1]);
+  }
+  return TETCAST_OK;
+}
+
 typedef struct VolumeCreate {
   TetcastContext *context;
   const TetcastMesh *mesh;
@@ -360,6 +374,9 @@ TetcastStatus tetcast_volume_create(TetcastContext *context, const TetcastMesh *
   if (desc->traversal != TETCAST_TRAVERSAL_SHELL && desc->traversal != TETCAST_TRAVERSAL_FACES) {
     return ARGUMENT(context, "unknown traversal %d", (int)desc->traversal);
   }
+  const TetcastStatus status = desc->bounds ? check_bounds(context, mesh, desc->bounds) : TETCAST_OK;
+  if (status)
+    return status;
   VolumeCreate call = {context, mesh, *desc, volume};
   return tc_call(volume_create, &call, &call.desc.progress);
 }

@@ -11,6 +11,7 @@
 #include "render/outline.h"
 #include "render/rays.h"
 #include "render/render.h"
+#include "tetcast_scene.h"
 
 TetcastStatus tetcast_scene_create(TetcastContext *context, const TetcastVolume *volume, TetcastScene **scene) {
   TC_ENTRY;
@@ -520,31 +521,9 @@ static TetcastStatus check_rows(const TetcastScene *scene, const TetcastRenderDe
   return TETCAST_OK;
 }
 
-typedef struct SceneRender {
-  const TetcastScene *scene;
-  const TetcastCamera *camera;
-  TetcastRenderDesc desc;
-  TetcastFrame *frame;
-  TetcastRenderStats *stats;
-} SceneRender;
-
-static TetcastStatus scene_render(void *data) {
-  const SceneRender *call = data;
-  return tc_scene_render(call->scene, call->camera, &call->desc, call->frame, call->stats);
-}
-
-TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamera *camera,
-                                   const TetcastRenderDesc *desc, TetcastFrame *frame, TetcastRenderStats *stats) {
-  TC_ENTRY;
-  const TetcastRenderDesc defaults = tetcast_render_desc_default();
-  if (!desc)
-    desc = &defaults;
-  if (!scene)
-    return TETCAST_ERROR_ARGUMENT;
+TetcastStatus tc_check_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *desc,
+                              const TetcastFrame *frame) {
   TetcastContext *context = scene->context;
-  CHECK_GIVEN(context, camera);
-  CHECK_DESC(context, desc);
-  CHECK_GIVEN(context, frame);
   if (desc->samples < 1 || desc->samples > 65536)
     return ARGUMENT(context, "%d samples: must be in [1, 65536]", desc->samples);
   static const int least[] = {INT32_MIN, 1, 1, 1, 2}, most[] = {INT32_MAX, 1 << 20, 1 << 20, TETCAST_MAX_GAUSS, 4096};
@@ -574,6 +553,35 @@ TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamer
     status = check_stop(context, desc->stop, "stop", frame);
   if (!status && desc->start)
     status = check_stop(context, desc->start, "start", frame);
+  return status;
+}
+
+typedef struct SceneRender {
+  const TetcastScene *scene;
+  const TetcastCamera *camera;
+  TetcastRenderDesc desc;
+  TetcastFrame *frame;
+  TetcastRenderStats *stats;
+} SceneRender;
+
+static TetcastStatus scene_render(void *data) {
+  const SceneRender *call = data;
+  return tc_scene_render(call->scene, call->camera, &call->desc, call->frame, call->stats);
+}
+
+TetcastStatus tetcast_scene_render(const TetcastScene *scene, const TetcastCamera *camera,
+                                   const TetcastRenderDesc *desc, TetcastFrame *frame, TetcastRenderStats *stats) {
+  TC_ENTRY;
+  const TetcastRenderDesc defaults = tetcast_render_desc_default();
+  if (!desc)
+    desc = &defaults;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
+  TetcastContext *context = scene->context;
+  CHECK_GIVEN(context, camera);
+  CHECK_DESC(context, desc);
+  CHECK_GIVEN(context, frame);
+  const TetcastStatus status = tc_check_render(scene, camera, desc, frame);
   SceneRender call = {scene, camera, *desc, frame, stats};
   return status ? status : tc_call(scene_render, &call, &call.desc.progress);
 }

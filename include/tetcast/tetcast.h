@@ -11,6 +11,7 @@
 #include <tetcast/clip.h>
 #include <tetcast/context.h>
 #include <tetcast/field.h>
+#include <tetcast/fragments.h>
 #include <tetcast/frame.h>
 #include <tetcast/integrator.h>
 #include <tetcast/isosurface.h>

@@ -35,6 +35,16 @@ typedef struct TetcastVolumeDesc {
   TetcastTraversal traversal;
   /* Not 0: scenes may be given fields of corners (TETCAST_CORNER), for one byte more per tetrahedron. Default: 0. */
   int corners;
+  /* [6], xmin, xmax, ymin, ymax, zmin, zmax: the bounds of a larger mesh of which this one is a part; finite, from
+   * −1e300 to 1e300, around all of the mesh's cells (TETCAST_ERROR_ARGUMENT). Where rays meet vertices is rounded in a
+   * frame of coordinates that follows from the bounds. So parts with the same bounds, and the whole with these, see
+   * vertices of the same coordinates, in arrays of the same type, at the same place to the bit, if they use the same
+   * instruction set (TetcastRenderDesc.isa): a ray passes a vertex or an edge on the same side in all of them, however
+   * the parts number their vertices, and where they meet it is neither lost nor counted twice. For that, vertices are
+   * projected for each picture, however few rays it has. What lies at one place without having the same coordinates
+   * (tetcast_volume_create()) is joined within a part only. NULL (the default): the mesh's own bounds, as it is no
+   * part. */
+  const double *bounds;
   /* Called while the volume is made (context.h). Default: not called. */
   TetcastProgress progress;
 } TetcastVolumeDesc;

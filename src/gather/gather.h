@@ -10,6 +10,7 @@
 #include "gather/count.h"
 #include "gather/trace.h"
 #include "gather/value.h"
+#include "gather/visit.h"
 #endif
 #if TC_LANES == 1
 #include "gather/sampled.h"
@@ -21,12 +22,14 @@
 #elif TC_LANES > 1
 #define TC_GATHERERS(GATHERER)                                                                                         \
   GATHERER(emission, TcEmission)                                                                                       \
-  GATHERER(trace, TcTrace) GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(count, TcCount)
+  GATHERER(trace, TcTrace)                                                                                             \
+  GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(count, TcCount) GATHERER(visit, TcVisit)
 #else
 #define TC_GATHERERS(GATHERER)                                                                                         \
   GATHERER(emission, TcEmission)                                                                                       \
   GATHERER(trace, TcTrace)                                                                                             \
-  GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(count, TcCount) GATHERER(sampled, TcSampled)
+  GATHERER(groups, TcGroups)                                                                                           \
+  GATHERER(value, TcValue) GATHERER(count, TcCount) GATHERER(visit, TcVisit) GATHERER(sampled, TcSampled)
 #endif
 
 enum {

@@ -45,6 +45,7 @@ typedef struct TcGatherJob {
   TcTrail *trail;                     /* where cells that are crossed are noted; NULL: nowhere */
   bool to_the_end;                    /* of coefficients: opaque rays go on, as what lies behind is wanted too */
   double rounding;                    /* with TC_BOUND: the rounding of an interpolated value, relative to it */
+  struct TcFragmentList *fragments;   /* where fragments of rays go */
   int exponent;                       /* the volume's unit of length is 2^exponent of the mesh's */
 } TcGatherJob;
 
@@ -80,6 +81,7 @@ typedef struct TcEnding {
   int64_t steps;    /* the number of steps that the packet has made */
   TcVec shift;      /* with TC_BOUND: TcPacket.shift */
   TcWide start;     /* with TC_SURFACES: TcPacket.start */
+  const TcPacket *walk;
 } TcEnding;
 
 /* The scalar of the cells in the lanes of `mask`; other lanes get that of some cell. */

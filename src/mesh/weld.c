@@ -16,10 +16,10 @@ typedef struct Grid {
 
 enum { NONE = 0 };
 
-void tc_weld_tolerance(const TetcastMesh *mesh, double tolerance[3]) {
+void tc_weld_tolerance(const TetcastMesh *mesh, const double bounds[6], double tolerance[3]) {
   const double unit = mesh->vertices.type == TETCAST_TYPE_FLOAT64 ? DBL_EPSILON : (double)FLT_EPSILON;
   for (int k = 0; k < 3; ++k) {
-    const double largest = fmax(fabs(mesh->bounds[2 * k]), fabs(mesh->bounds[2 * k + 1]));
+    const double largest = fmax(fabs(bounds[2 * k]), fabs(bounds[2 * k + 1]));
     int exponent;
     frexp(largest, &exponent); /* below 2^exponent, where units are half of the epsilon times that */
     tolerance[k] = largest > 0 ? ldexp(4 * 0.5 * unit, exponent) : 0;
@@ -145,11 +145,11 @@ static TetcastStatus weld(Grid *grid, const uint32_t *vertices, int64_t count, u
   return TETCAST_OK;
 }
 
-TetcastStatus tc_weld(const TetcastMesh *mesh, const uint32_t *vertices, int64_t count, TcWeld **welds,
-                      int64_t *weld_count) {
+TetcastStatus tc_weld(const TetcastMesh *mesh, const double bounds[6], const uint32_t *vertices, int64_t count,
+                      TcWeld **welds, int64_t *weld_count) {
   TetcastContext *context = mesh->context;
   Grid grid = {.mesh = mesh, .mask = 1};
-  tc_weld_tolerance(mesh, grid.tolerance);
+  tc_weld_tolerance(mesh, bounds, grid.tolerance);
   *welds = NULL;
   *weld_count = 0;
   while (grid.mask < 2 * (uint64_t)count)

@@ -13,14 +13,14 @@ typedef struct TcWeld {
 } TcWeld;
 
 /* How far apart, along each axis, vertices may be that count as one: four units in the last place of numbers as large
- * as the mesh's largest coordinate along that axis, in the precision that it has. What two programs, or one program for
- * two cells, compute from the same numbers isn't rounded further apart. */
-void tc_weld_tolerance(const TetcastMesh *mesh, double tolerance[3]);
+ * as the largest coordinate of `bounds` along that axis, in the precision that the mesh has. What two programs, or one
+ * program for two cells, compute from the same numbers isn't rounded further apart. */
+void tc_weld_tolerance(const TetcastMesh *mesh, const double bounds[6], double tolerance[3]);
 
 /* Finds among `count` vertices those that lie within the tolerance of an earlier one. If two of the
  * vertices that would become one are of the same cell, all of them stay: that cell is thin, and nothing is torn. The
  * caller frees *welds, which is NULL where there are none. */
-TetcastStatus tc_weld(const TetcastMesh *mesh, const uint32_t *vertices, int64_t count, TcWeld **welds,
-                      int64_t *weld_count);
+TetcastStatus tc_weld(const TetcastMesh *mesh, const double bounds[6], const uint32_t *vertices, int64_t count,
+                      TcWeld **welds, int64_t *weld_count);
 
 #endif

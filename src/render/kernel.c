@@ -274,6 +274,7 @@ static void begin_packet(const int which, const TcSurfaces *surfaces, const TcGa
     p->start = waiting->start;
     memcpy(p->slice, waiting->slice, (size_t)surfaces->slice_count * sizeof *p->slice);
   }
+  p->origin = waiting->origin;
   p->lanes = waiting->lanes;
   memcpy(p->destination, waiting->destination, sizeof p->destination);
   p->active = tc_none();
@@ -296,7 +297,7 @@ static void begin_packet(const int which, const TcSurfaces *surfaces, const TcGa
 static void finish_packet(const TcJob *job, State *state, TcWorker *worker, Packet *packet, double *sums) {
   double gathered[TC_MAX_SUMS][TC_LANES], nowhere[TC_MAX_SUMS];
   TcPacket *p = &packet->walk;
-  const TcEnding ending = {.stopped = p->stopped, .steps = p->steps, .shift = p->shift, .start = p->start};
+  const TcEnding ending = {.stopped = p->stopped, .steps = p->steps, .shift = p->shift, .start = p->start, .walk = p};
   tc_gather_end(rows[job->kernel].gatherer, rows[job->kernel].features, &state->job, &packet->gather, &ending,
                 gathered);
   if (!TC_SINGLE)
@@ -361,6 +362,7 @@ static State *prepare(const TcJob *job, TcWorker *worker) {
                              .trail = worker->trail,
                              .blend = job->blend,
                              .to_the_end = job->to_the_end,
+                             .fragments = &worker->fragments,
                              .exponent = job->shell->volume->exponent,
                              .rounding = 8 * 0x1p-53};
   state->queue.ground = &state->ground;

@@ -5,6 +5,7 @@
 
 #include <tetcast/blend.h>
 
+#include "gather/fragment_list.h"
 #include "optics/second.h"
 #include "optics/tolerance.h"
 #include "volume/clip.h"
@@ -69,12 +70,13 @@ typedef struct TcJob {
 /* What each worker has for itself. */
 typedef struct TcWorker {
   TcHits hits[TC_HIT_LISTS];
-  void *state;         /* TcIsaKernels.state_size() bytes, aligned to 64, cleared when the worker begins */
-  void *precise_state; /* single precision: the same for the kernels with which rays are walked again */
-  TcTrail *trail;      /* where TC_KERNEL_trace notes the cells that are crossed; NULL: nowhere */
-  int64_t segments;    /* the number of cells crossed */
-  int64_t lost;        /* the number of rays whose walk found no way out of a cell */
-  int64_t again;       /* the number of rays that were walked again */
+  void *state;              /* TcIsaKernels.state_size() bytes, aligned to 64, cleared when the worker begins */
+  void *precise_state;      /* single precision: the same for the kernels with which rays are walked again */
+  TcFragmentList fragments; /* of the rays so far; their pixels are the destinations of the rays */
+  TcTrail *trail;           /* where TC_KERNEL_trace notes the cells that are crossed; NULL: nowhere */
+  int64_t segments;         /* the number of cells crossed */
+  int64_t lost;             /* the number of rays whose walk found no way out of a cell */
+  int64_t again;            /* the number of rays that were walked again */
 } TcWorker;
 
 /* A ray of a picture. */

@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "base/vec3.h"
 #include "optics/sampled.h"
-#include "render/work.h"
+#include "render/fragments.h"
 
 /* ── the choice among kernels ── */
 
@@ -109,6 +109,13 @@ void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job) {
   job->shell = &scene->prepared->shell;
 }
 
+/* Sets up the job for fragments of what is seen through a transfer function. */
+static void see_fragments(const TetcastScene *scene, TcJob *job) {
+  const unsigned needed = TC_COLORED | (job->pieces->scaled ? TC_SCALED : 0) | association_of(scene->values);
+  job->sums = 1;
+  job->kernel = choose_row("visit", needed, &job->one_lane);
+}
+
 void tc_job_of_opacity(const TetcastScene *scene, const TcPieces *pieces, TcJob *job) {
   job->shell = &scene->prepared->shell;
   job->values = scene->values;
@@ -134,6 +141,7 @@ bool tc_worker_begin(TetcastContext *context, const TcIsaKernels *kernels, const
   memset(worker, 0, sizeof *worker);
   for (int i = 0; i < TC_HIT_LISTS; ++i)
     worker->hits[i].context = context;
+  worker->fragments.context = context;
   const size_t size = kernels->state_size(job);
   worker->state = tc_allocate(context, 1, size);
   if (!worker->state)
@@ -153,6 +161,7 @@ void tc_worker_end(TetcastContext *context, TcWorker *worker) {
     tc_hits_clear(&worker->hits[i]);
   tc_release(context, worker->state);
   tc_release(context, worker->precise_state);
+  tc_fragment_list_clear(&worker->fragments);
 }
 
 bool tc_worker_failed(const TcWorker *worker) {
@@ -193,6 +202,8 @@ static bool render_tile(const TcRender *render, int64_t tile_x, int64_t tile_y, 
   const int64_t numbers = (x1 - x0) * (y1 - y0) * job->sums;
   const double samples = job->samples_x * job->samples_y;
   memset(working->sums, 0, (size_t)numbers * sizeof *working->sums);
+  if (render->fragments)
+    return tc_fragments_tile(render, x0, y0, x1, y1, working);
   if (!render->kernels->tile(job, x0, y0, x1, y1, &working->worker, working->sums) ||
       (render->counted && !count_cells(render, x0, y0, x1, y1, working)))
     return false;
@@ -251,8 +262,11 @@ static bool project_some(void *data, int64_t begin, int64_t end, int worker) {
 /* Whether projecting all vertices once is faster than moving them into the space of each ray that meets them.
  * Projecting one vertex takes about as long as a dozen steps of a ray become faster by it, so it doesn't pay for small
  * pictures of large meshes, nor where little of the mesh is seen. The number of steps is estimated as if the mesh were
- * a cube, of which each ray crosses half as many cells as ∛cell_count. */
+ * a cube, of which each ray crosses half as many cells as ∛cell_count. Parts of a larger mesh must not differ in it, as
+ * rays that pass from one to another would pass edges on different sides. */
 static bool worth_projecting(const TetcastScene *scene, int64_t rays, const TcJob *job) {
+  if (scene->volume->is_part)
+    return true;
   const double cells = (double)scene->volume->cell_count, crossings = 0.5 * (double)rays * cbrt(cells);
   const double share = job->shell->visible ? (double)job->shell->visible_cells / cells : 1;
   return share * crossings > 3 * (double)scene->volume->vertex_count;
@@ -384,12 +398,16 @@ static TetcastStatus run(TcRender *render, const TetcastRenderDesc *desc, Tetcas
     ok = ok && w->sums && (w->cells || !render->counted);
   }
   TetcastStatus status = TETCAST_OK;
+  if (ok && render->fragments)
+    tc_fragments_lend(render, threads);
   if (!ok)
     status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: workers");
   else if (desc->adaptive_coarse > 0)
     status = tc_adaptive_run(render, desc, &stats->rays);
   else
     status = run_tiles(render, &desc->progress);
+  if (ok && render->fragments)
+    status = tc_fragments_take(render, threads, status);
   for (int i = 0; i < threads; ++i) {
     TcWorking *w = &render->workers[i];
     stats->segments += w->worker.segments;
@@ -442,6 +460,11 @@ void tc_forget_looks(TetcastContext *context, TcRender *render) {
 
 TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *given,
                               TetcastFrame *frame, TetcastRenderStats *stats) {
+  return tc_render(scene, camera, given, frame, NULL, stats);
+}
+
+TetcastStatus tc_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *given,
+                        TetcastFrame *frame, struct TcFragmentWork *fragments, TetcastRenderStats *stats) {
   TetcastContext *context = scene->context;
   TetcastRenderDesc all = *given;
   if (all.adaptive_coarse > 0 && all.adaptive_epsilon == 0) { /* no two corners differ by less: all rays are cast */
@@ -452,10 +475,11 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
   const bool normal = tc_frame_channel(frame, TETCAST_CHANNEL_NORMAL) != NULL,
              depth = normal || tc_frame_channel(frame, TETCAST_CHANNEL_DEPTH);
-  const bool measured = exact && !scene->blend && !depth && !tc_scene_has_surfaces(scene) && !tc_scene_is_lit(scene) &&
-                        scene->row_count == 0 &&
+  const bool measured = exact && !fragments && !scene->blend && !depth && !tc_scene_has_surfaces(scene) &&
+                        !tc_scene_is_lit(scene) && scene->row_count == 0 &&
                         (desc->tolerance > 0 || tc_frame_channel(frame, TETCAST_CHANNEL_ERROR));
-  TcRender render = {.scene = scene, .frame = frame, .first_row = desc->picture_height ? desc->first_row : 0};
+  TcRender render = {
+      .scene = scene, .frame = frame, .fragments = fragments, .first_row = desc->picture_height ? desc->first_row : 0};
   TcJob *job = &render.job;
   job->width = frame->width;
   job->height = desc->picture_height ? desc->picture_height : frame->height;
@@ -481,6 +505,8 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
   job->to_the_end =
       tc_frame_channel(frame, TETCAST_CHANNEL_OPTICAL_DEPTH) || tc_frame_channel(frame, TETCAST_CHANNEL_PATH_LENGTH);
   tc_job_of_scene(scene, measured, job);
+  if (fragments)
+    see_fragments(scene, job);
   const bool one_by_one = job->one_lane || scene->volume->traversal == TETCAST_TRAVERSAL_FACES;
   render.bounded = measured;
   render.counted = tc_frame_channel(frame, TETCAST_CHANNEL_CELLS) != NULL;

@@ -21,12 +21,13 @@ typedef struct TcRender {
   TcScreen screen;
   TcSurfaces surfaces;
   TcLights lights;
-  TcSecond second;    /* of a transfer function of one dimension, for kernels that expect two */
-  TcWorking *workers; /* [threads] */
-  bool bounded;       /* a bound on the error is gathered as well */
-  bool counted;       /* the cells that rays cross are counted as well */
-  bool plain;         /* the sums are the frame's pixels as they are, and there are no channels */
-  int64_t first_row;  /* of the job's picture, which the frame begins with */
+  struct TcFragmentWork *fragments; /* where fragments go, in place of a picture; NULL: it is a picture */
+  TcSecond second;                  /* of a transfer function of one dimension, for kernels that expect two */
+  TcWorking *workers;               /* [threads] */
+  bool bounded;                     /* a bound on the error is gathered as well */
+  bool counted;                     /* the cells that rays cross are counted as well */
+  bool plain;                       /* the sums are the frame's pixels as they are, and there are no channels */
+  int64_t first_row;                /* of the job's picture, which the frame begins with */
   int64_t tiles_x, tiles_y;
 } TcRender;
 
@@ -66,6 +67,11 @@ static inline void tc_sample_grid(int samples, int *x, int *y) {
   }
   *x = samples / *y;
 }
+
+/* Renders the scene into the frame, or, if `fragments` isn't NULL, to fragments (fragments.h); of the frame, which has
+ * no pixels then, only the size counts. */
+TetcastStatus tc_render(const TetcastScene *scene, const TetcastCamera *camera, const TetcastRenderDesc *given,
+                        TetcastFrame *frame, struct TcFragmentWork *fragments, TetcastRenderStats *stats);
 
 /* Renders the frame by fewer rays than it has pixels (adaptive.c), once the workers are there. *rays is how many. */
 TetcastStatus tc_adaptive_run(TcRender *render, const TetcastRenderDesc *desc, int64_t *rays);

@@ -76,10 +76,10 @@ static bool take_ranks(void *data, int64_t begin, int64_t end, int worker) {
   return true;
 }
 
-static TetcastStatus take_vertices(TetcastVolume *volume, const TetcastMesh *mesh) {
+static TetcastStatus take_vertices(TetcastVolume *volume, const TetcastMesh *mesh, const double bounds[6]) {
   double largest = 0;
   for (int k = 0; k < 6; ++k)
-    largest = fmax(largest, fabs(mesh->bounds[k]));
+    largest = fmax(largest, fabs(bounds[k]));
   if (largest > 0)
     frexp(largest, &volume->exponent);
   volume->positions_are_double = mesh->vertices.type == TETCAST_TYPE_FLOAT64;
@@ -93,8 +93,7 @@ static TetcastStatus take_vertices(TetcastVolume *volume, const TetcastMesh *mes
   tc_parallel_for(volume->context, volume->vertex_count, GRAIN, take_positions, &take, NULL);
   double diagonal2 = 0;
   for (int k = 0; k < 3; ++k) {
-    const double low = ldexp(mesh->bounds[2 * k], -volume->exponent),
-                 high = ldexp(mesh->bounds[2 * k + 1], -volume->exponent);
+    const double low = ldexp(bounds[2 * k], -volume->exponent), high = ldexp(bounds[2 * k + 1], -volume->exponent);
     volume->center[k] = 0.5 * low + 0.5 * high;
     diagonal2 += (high - low) * (high - low);
   }
@@ -164,12 +163,12 @@ static TetcastStatus shell_vertices(const TetcastVolume *volume, uint32_t **out,
 
 /* Lets cells meet at vertices that lie at one place. If cells share all their vertices, this only takes a look at the
  * vertices of the boundary. */
-static TetcastStatus join_cells(TetcastVolume *volume, Take *take) {
+static TetcastStatus join_cells(TetcastVolume *volume, const double bounds[6], Take *take) {
   uint32_t *vertices = NULL;
   int64_t count = 0;
   TetcastStatus status = shell_vertices(volume, &vertices, &count);
   if (!status)
-    status = tc_weld(take->mesh, vertices, count, &volume->welds, &volume->weld_count);
+    status = tc_weld(take->mesh, bounds, vertices, count, &volume->welds, &volume->weld_count);
   tc_release(volume->context, vertices);
   if (status || volume->weld_count == 0)
     return status;
@@ -197,7 +196,7 @@ static TetcastStatus order_corners(TetcastVolume *volume, Take *take) {
 }
 
 /* Builds the adjacency, with vertices numbered as in volume->vertex_source. */
-static TetcastStatus take_cells(TetcastVolume *volume, const TetcastMesh *mesh, bool corners,
+static TetcastStatus take_cells(TetcastVolume *volume, const TetcastMesh *mesh, const double bounds[6], bool corners,
                                 const TetcastProgress *progress) {
   Take take = {.volume = volume, .mesh = mesh};
   if (!tc_allocate_array(volume->context, (void **)&take.rank, volume->vertex_count, sizeof *take.rank, "vertices")) {
@@ -207,7 +206,7 @@ static TetcastStatus take_cells(TetcastVolume *volume, const TetcastMesh *mesh, 
   TcAdjacency *adjacency = &volume->adjacency;
   TetcastStatus status = tc_adjacency_build(mesh, take.rank, true, progress, adjacency);
   if (!status)
-    status = join_cells(volume, &take);
+    status = join_cells(volume, bounds, &take);
   if (!status && corners)
     status = order_corners(volume, &take);
   tc_release(volume->context, take.rank);
@@ -252,11 +251,12 @@ static void describe(TetcastVolume *volume, const TetcastMesh *mesh) {
 
 static TetcastStatus build(TetcastVolume *volume, const TetcastMesh *mesh, const TetcastVolumeDesc *desc) {
   TcStage stage;
+  const double *bounds = desc->bounds ? desc->bounds : mesh->bounds;
   TetcastStatus status = tc_order_vertices(mesh, &volume->vertex_source);
   if (!status)
-    status = take_vertices(volume, mesh);
+    status = take_vertices(volume, mesh, bounds);
   if (!status)
-    status = take_cells(volume, mesh, desc->corners, tc_stage(&stage, &desc->progress, 0.1, 1));
+    status = take_cells(volume, mesh, bounds, desc->corners, tc_stage(&stage, &desc->progress, 0.1, 1));
   if (status)
     return status;
   volume->cell_count = volume->adjacency.cell_count;
@@ -294,6 +294,7 @@ TetcastStatus tc_volume_create(TetcastContext *context, const TetcastMesh *mesh,
   memset(volume, 0, sizeof *volume);
   volume->context = context;
   volume->traversal = desc->traversal;
+  volume->is_part = desc->bounds != NULL;
   volume->vertex_count = mesh->vertices.count;
   volume->mesh_cell_count = mesh->tetrahedra.count;
   TetcastStatus status = tc_shared_create(context, &volume->shared);

@@ -28,7 +28,8 @@ struct TetcastVolume {
   TetcastContext *context;
   TetcastTraversal traversal;
   int exponent;
-  double center[3], radius; /* of a sphere around all cells, scaled */
+  double center[3], radius; /* of a sphere around all cells, or those of the whole that this is a part of, scaled */
+  bool is_part;             /* bounds were given: all that is rounded is rounded as in other parts with these */
   int64_t vertex_count, cell_count, mesh_cell_count;
 
   /* [vertex_count][3], and room for one number more, so that four may be read at once: x, y, z scaled, as the mesh has

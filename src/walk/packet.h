@@ -67,6 +67,9 @@ typedef struct TcPacket {
   /* Where what each ray gathers is added (kernel.c). */
   int64_t destination[TC_LANES];
 
+  /* The depth of the rays' points that are nearest to the volume's centre. */
+  TcWide origin;
+
   /* If there are surfaces: the rays' directions, unit vectors; the depths at which they meet slices. */
   TcWide along[3];
   TcVec slice[TETCAST_MAX_SLICES];

@@ -15,6 +15,7 @@ enum {
 typedef struct TcWaiting {
   TcRays rays;
   /* As TcPacket has them. */
+  TcWide origin;
   TcWide along[3];
   TcVec slice[TETCAST_MAX_SLICES];
   TcWide start;
@@ -36,6 +37,7 @@ static void tc_enqueue(TcPlaced *placed, TcQueue *queue) {
   const int first = queue->count * TC_LANES;
   TcWaiting *waiting = &queue->waiting[queue->count++];
   waiting->lanes = tc_take(queue->ground, placed, &waiting->rays);
+  waiting->origin = placed->shift;
   if (queue->ground->surfaces) {
     memcpy(waiting->along, placed->lines.direction, sizeof waiting->along);
     waiting->start = placed->near - placed->shift;

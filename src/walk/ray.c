@@ -11,7 +11,12 @@
  *     (a − δ) × (b − δ) = a × b − δ (b.y − a.y) + δ² (b.x − a.x) + …
  *
  * so that all decisions at all cells belong to one and the same slightly moved ray and mesh, and every step of the walk
- * has exactly one way out. A triangle that is seen exactly edge-on is never crossed. */
+ * has exactly one way out. A triangle that is seen exactly edge-on is never crossed.
+ *
+ * The numbers only decide about two vertices that are seen at the same place. A triangle that has both is seen edge-on,
+ * and the cross products of its other two edges are of opposite signs; and of three at the same place, numbers are not
+ * cyclic. So which triangles are crossed does not depend on how vertices are numbered, and parts of a mesh that number
+ * theirs each for itself agree. */
 double tc_tie(double ax, double ay, uint32_t a, double bx, double by, uint32_t b) {
   const double p = ax * by, q = ay * bx;
   const double p_error = tc_product_error(ax, by, p), q_error = tc_product_error(ay, bx, q);

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Parts of a mesh, rendered one by one, and put together exactly.
+ *
+ * Parts need be neither convex nor ordered: a ray may pass from one to another and back, as often as it likes. What it
+ * has in a part from where it enters to where it leaves is a fragment. All fragments of a ray, from all parts, sorted
+ * along it and composited, are what it has in the whole mesh, up to rounding.
+ *
+ * Each part is a mesh, a volume (with TetcastVolumeDesc.bounds, the same for all) and a scene, in one process or in
+ * several; a cell is in one part only. Every part renders fragments from the same camera, with the same transfer
+ * function and instruction set; then tetcast_fragments_composite() makes the picture. */
+#ifndef TETCAST_FRAGMENTS_H
+#define TETCAST_FRAGMENTS_H
+
+#include <stdint.h>
+
+#include <tetcast/camera.h>
+#include <tetcast/context.h>
+#include <tetcast/frame.h>
+#include <tetcast/scene.h>
+#include <tetcast/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What a ray has between two places at which it is outside of the part, or of what is visible of it. It holds no
+ * pointers, and may be sent to other processes as it is. */
+typedef struct TetcastFragment {
+  /* Its pixel, row · width + column, rows from the top. */
+  int64_t pixel;
+  /* Where it begins, in the mesh's unit of length along the ray, from the ray's point that is nearest to the middle of
+   * the volume's bounds, towards the eye negative. So places don't lose digits to a distant eye. For the distance from
+   * where the ray starts, add (middle − start) · direction. */
+  double begin;
+  /* Where it ends, likewise. */
+  double end;
+  /* ∫ κ dt, above 0; opacity is 1 − exp(−optical_depth). */
+  double optical_depth;
+  /* Red, green, blue, premultiplied by its opacity. */
+  double color[3];
+} TetcastFragment;
+
+/* Some fragments, by ascending pixels. */
+typedef struct TetcastFragmentList {
+  /* [count]; NULL is allowed where count is 0. */
+  const TetcastFragment *data;
+  /* How many there are. */
+  int64_t count;
+} TetcastFragmentList;
+
+/* The fragments of a picture of a part, with memory that is kept from picture to picture. */
+typedef struct TetcastFragments TetcastFragments;
+
+/* Makes an object without fragments. */
+TETCAST_API TetcastStatus tetcast_fragments_create(TetcastContext *context, TetcastFragments **fragments);
+
+/* Frees it and sets *fragments to NULL. NULL and pointer to NULL do nothing. */
+TETCAST_API void tetcast_fragments_destroy(TetcastFragments **fragments);
+
+/* Its fragments, pixel by pixel, those of a pixel by ascending begin; valid until it is rendered into again. */
+TETCAST_API TetcastFragmentList tetcast_fragments_list(const TetcastFragments *fragments);
+
+/* Renders a picture of width × height pixels, each in [1, 2^20], one ray each, to fragments, in place of those that
+ * were there. Fragments of which nothing is seen are left out, and so is what lies behind an opaque part of a fragment.
+ * `desc` and `stats` may be NULL; of `desc`, isa, stop, start, picture_height (`height` is the number of rows then) and
+ * progress are used, and fragments are exact whatever the tolerance. The scene must have a field and a transfer
+ * function and show nothing else: coefficients, surfaces, light in the volume, a transfer function of two dimensions,
+ * another blend mode, another integrator, several samples, adaptive_coarse and TETCAST_TRAVERSAL_FACES are
+ * TETCAST_ERROR_ARGUMENT. After an error or a cancelled call there are no fragments. With one instruction set,
+ * fragments have the same bits for any number of threads. Calls with different `fragments` may run at the same time,
+ * also on one scene. */
+TETCAST_API TetcastStatus tetcast_scene_render_fragments(const TetcastScene *scene, const TetcastCamera *camera,
+                                                         const TetcastRenderDesc *desc, int64_t width, int64_t height,
+                                                         TetcastFragments *fragments, TetcastRenderStats *stats);
+
+/* Composites lists[count] into all pixels of `frame`; its channels are not changed. Pixels have the same bits whatever
+ * the order of the lists, and however fragments are shared out among them. A pixel that isn't one of the frame's or not
+ * in ascending order, numbers that are not as above, and NaN are TETCAST_ERROR_DATA; the frame's pixels are unspecified
+ * then.
+ *
+ * `overlap`, if it isn't NULL, is the largest length over which a fragment of a pixel overlaps those before it, in the
+ * mesh's unit. Where no cell is in two parts, and the mesh doesn't overlap itself, it is of the order of rounding.
+ * Cells in several parts, as ghosts that should have been left out, show up in it if a ray sees them. */
+TETCAST_API TetcastStatus tetcast_fragments_composite(TetcastContext *context, const TetcastFragmentList *lists,
+                                                      int64_t count, TetcastFrame *frame, double *overlap);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A growing list of the fragments that a worker has gathered. */
+#ifndef TC_GATHER_FRAGMENT_LIST_H
+#define TC_GATHER_FRAGMENT_LIST_H
+
+#include <tetcast/fragments.h>
+
+#include "base/base.h"
+
+typedef struct TcFragmentList {
+  TetcastContext *context;
+  TetcastFragment *data;
+  int64_t count, capacity;
+  bool out_of_memory;
+} TcFragmentList;
+
+/* Makes room for more. False if memory has run out, which is noted. */
+bool tc_fragment_list_grow(TcFragmentList *list);
+void tc_fragment_list_clear(TcFragmentList *list);
+
+/* Appends a fragment for the caller to fill. NULL if memory has run out. */
+static inline TetcastFragment *tc_fragment_list_append(TcFragmentList *list) {
+  return list->count < list->capacity || tc_fragment_list_grow(list) ? &list->data[list->count++] : NULL;
+}
+
+#endif

@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The public boundary of fragments: as tetcast.c. */
+#include <inttypes.h>
+
+#include "base/boundary.h"
+#include "render/fragments.h"
+#include "tetcast_scene.h"
+
+TetcastStatus tetcast_fragments_create(TetcastContext *context, TetcastFragments **fragments) {
+  TC_ENTRY;
+  CHECK_OUT(context, fragments);
+  CHECK_GIVEN(context, context);
+  return tc_fragments_create(context, fragments);
+}
+
+void tetcast_fragments_destroy(TetcastFragments **fragments) {
+  TC_ENTRY;
+  if (!fragments)
+    return;
+  tc_fragments_destroy(*fragments);
+  *fragments = NULL;
+}
+
+TetcastFragmentList tetcast_fragments_list(const TetcastFragments *fragments) {
+  return (TetcastFragmentList){fragments->data, fragments->count};
+}
+
+/* Whether the scene shows nothing but a field through a transfer function. */
+static TetcastStatus check_looks(const TetcastScene *scene, const TetcastRenderDesc *desc) {
+  TetcastContext *context = scene->context;
+  const char *what = scene->coefficients                                   ? "coefficients"
+                     : scene->blend                                        ? "another blend mode than composite"
+                     : tc_scene_has_surfaces(scene)                        ? "surfaces"
+                     : tc_scene_is_lit(scene)                              ? "light in the volume"
+                     : scene->row_count > 0                                ? "a transfer function of two dimensions"
+                     : desc->integrator                                    ? "another integrator than the exact one"
+                     : desc->samples != 1                                  ? "several samples"
+                     : desc->adaptive_coarse                               ? "adaptive"
+                     : scene->volume->traversal != TETCAST_TRAVERSAL_SHELL ? "the traversal of faces"
+                                                                           : NULL;
+  return what ? ARGUMENT(context, "fragments: not possible with %s", what) : TETCAST_OK;
+}
+
+typedef struct RenderFragments {
+  const TetcastScene *scene;
+  const TetcastCamera *camera;
+  TetcastRenderDesc desc;
+  int64_t width, height;
+  TetcastFragments *fragments;
+  TetcastRenderStats *stats;
+} RenderFragments;
+
+static TetcastStatus render_fragments(void *data) {
+  const RenderFragments *call = data;
+  return tc_scene_render_fragments(call->scene, call->camera, &call->desc, call->width, call->height, call->fragments,
+                                   call->stats);
+}
+
+TetcastStatus tetcast_scene_render_fragments(const TetcastScene *scene, const TetcastCamera *camera,
+                                             const TetcastRenderDesc *desc, int64_t width, int64_t height,
+                                             TetcastFragments *fragments, TetcastRenderStats *stats) {
+  TC_ENTRY;
+  const TetcastRenderDesc defaults = tetcast_render_desc_default();
+  if (!desc)
+    desc = &defaults;
+  if (!scene)
+    return TETCAST_ERROR_ARGUMENT;
+  TetcastContext *context = scene->context;
+  CHECK_GIVEN(context, camera);
+  CHECK_DESC(context, desc);
+  CHECK_GIVEN(context, fragments);
+  fragments->count = 0;
+  if (width < 1 || width > 1 << 20 || height < 1 || height > 1 << 20)
+    return ARGUMENT(context, "a picture of %" PRId64 " × %" PRId64 " pixels: must be in [1, 2^20]", width, height);
+  const TetcastFrame frame = {.context = context, .width = width, .height = height, .type = TETCAST_TYPE_FLOAT64};
+  TetcastStatus status = check_looks(scene, desc);
+  if (!status)
+    status = tc_check_render(scene, camera, desc, &frame);
+  RenderFragments call = {scene, camera, *desc, width, height, fragments, stats};
+  return status ? status : tc_call(render_fragments, &call, &call.desc.progress);
+}
+
+typedef struct CompositeFragments {
+  TetcastContext *context;
+  const TetcastFragmentList *lists;
+  int64_t count;
+  TetcastFrame *frame;
+  double *overlap;
+} CompositeFragments;
+
+static TetcastStatus composite_fragments(void *data) {
+  const CompositeFragments *call = data;
+  return tc_fragments_composite(call->context, call->lists, call->count, call->frame, call->overlap);
+}
+
+TetcastStatus tetcast_fragments_composite(TetcastContext *context, const TetcastFragmentList *lists, int64_t count,
+                                          TetcastFrame *frame, double *overlap) {
+  TC_ENTRY;
+  CHECK_GIVEN(context, context);
+  CHECK_GIVEN(context, frame);
+  if (count < 0 || (count > 0 && !lists))
+    return ARGUMENT(context, "fragments: %" PRId64 " lists%s", count, lists ? "" : " that are NULL");
+  for (int64_t i = 0; i < count; ++i) {
+    if (lists[i].count < 0 || (lists[i].count > 0 && !lists[i].data))
+      return ARGUMENT(context, "fragments: list %" PRId64 " has %" PRId64 "%s", i, lists[i].count,
+                      lists[i].data ? "" : ", and no data");
+  }
+  return tc_call(composite_fragments, &(CompositeFragments){context, lists, count, frame, overlap}, NULL);
+}
