@@ -96,6 +96,7 @@ using Volume = Handle<TetcastVolume, tetcast_volume_destroy>;
 using TransferFunction = Handle<TetcastTransferFunction, tetcast_transfer_function_destroy>;
 using Scene = Handle<TetcastScene, tetcast_scene_destroy>;
 using Frame = Handle<TetcastFrame, tetcast_frame_destroy>;
+using Fragments = Handle<TetcastFragments, tetcast_fragments_destroy>;
 
 /* The object that create(arguments…, &object) makes; throws an Error if it makes none. */
 template <typename Object, typename Create, typename... Arguments>

@@ -252,11 +252,12 @@ module tetcast
     integer(c_int64_t) :: oversized
   end type
 
-  ! How a volume is made.
+  ! How a volume is made; `bounds` is c_loc() of six numbers.
   type, bind(c) :: TetcastVolumeDesc
     integer(c_int32_t) :: cookie
     integer(c_int) :: traversal
     integer(c_int) :: corners
+    type(c_ptr) :: bounds
     type(TetcastProgress) :: progress
   end type
 
@@ -416,6 +417,75 @@ module tetcast
     type(c_ptr) :: precision
   end type
 
+  ! Any rays, made by tetcast_rays_default(): origins and directions are arrays of 3 × n, begins and ends of n.
+  type, bind(c) :: TetcastRays
+    integer(c_int32_t) :: cookie
+    type(TetcastArray) :: origins
+    type(TetcastArray) :: directions
+    type(TetcastArray) :: begins
+    type(TetcastArray) :: ends
+  end type
+
+  ! Where the results of rays go: c_loc() of arrays of real(c_double), 4 × n, n or groups × n. Left out: not wanted.
+  type, bind(c) :: TetcastCastResult
+    type(c_ptr) :: color = c_null_ptr
+    type(c_ptr) :: optical_depth = c_null_ptr
+    type(c_ptr) :: length = c_null_ptr
+    type(c_ptr) :: error = c_null_ptr
+    type(c_ptr) :: value = c_null_ptr
+    type(c_ptr) :: radiance = c_null_ptr
+    type(c_ptr) :: group_optical_depth = c_null_ptr
+    type(c_ptr) :: transmittance = c_null_ptr
+  end type
+
+  ! How rays are cast.
+  type, bind(c) :: TetcastCastDesc
+    integer(c_int32_t) :: cookie
+    integer(c_int) :: isa
+    type(TetcastProgress) :: progress
+  end type
+
+  ! A cell that a ray crosses; cell and vertices are counted from 0.
+  type, bind(c) :: TetcastCrossing
+    integer(c_int32_t) :: cell
+    integer(c_int32_t) :: vertex(4)
+    real(c_double) :: begin
+    real(c_double) :: end
+    real(c_double) :: length
+    real(c_double) :: weight(4, 2)
+  end type
+
+  ! What several rays cross, all counted from 0: c_f_pointer() makes Fortran pointers of the last two.
+  type, bind(c) :: TetcastTrace
+    integer(c_int64_t) :: first
+    integer(c_int64_t) :: count
+    type(c_ptr) :: offsets
+    type(c_ptr) :: crossings
+  end type
+
+  ! How rays are traced.
+  type, bind(c) :: TetcastTraceDesc
+    integer(c_int32_t) :: cookie
+    integer(c_int) :: weights
+    integer(c_int) :: isa
+    type(TetcastProgress) :: progress
+  end type
+
+  ! What a ray has in a part of a mesh; pixels are counted from 0.
+  type, bind(c) :: TetcastFragment
+    integer(c_int64_t) :: pixel
+    real(c_double) :: begin
+    real(c_double) :: end
+    real(c_double) :: optical_depth
+    real(c_double) :: color(3)
+  end type
+
+  ! Some fragments; `data` is c_loc() of an array of them.
+  type, bind(c) :: TetcastFragmentList
+    type(c_ptr) :: data = c_null_ptr
+    integer(c_int64_t) :: count = 0
+  end type
+
   ! What is to be found out about a field.
   type, bind(c) :: TetcastStatisticsDesc
     integer(c_int32_t) :: cookie
@@ -468,6 +538,13 @@ module tetcast
       import
       type(c_ptr), value :: user, memory
     end subroutine
+
+    function tetcast_trace_function(user, trace) result(goes_on) bind(c)
+      import
+      type(c_ptr), value :: user
+      type(TetcastTrace), intent(in) :: trace
+      logical(c_bool) :: goes_on
+    end function
   end interface
 
   interface
@@ -1013,6 +1090,82 @@ module tetcast
       type(TetcastRenderDesc), intent(in) :: desc
       real(c_double), intent(in) :: color(3)
       type(c_ptr), value :: frame
+      integer(c_int) :: status
+    end function
+
+    ! cast.h: rays as numbers
+    function tetcast_rays_default() result(answer) bind(c)
+      import
+      type(TetcastRays) :: answer
+    end function
+
+    function tetcast_cast_desc_default() result(answer) bind(c)
+      import
+      type(TetcastCastDesc) :: answer
+    end function
+
+    function tetcast_scene_cast(scene, rays, desc, result, stats) result(status) bind(c)
+      import
+      type(c_ptr), value :: scene
+      type(TetcastRays), intent(in) :: rays
+      type(TetcastCastDesc), intent(in) :: desc
+      type(TetcastCastResult), intent(in) :: result
+      type(TetcastRenderStats), intent(out) :: stats
+      integer(c_int) :: status
+    end function
+
+    function tetcast_trace_desc_default() result(answer) bind(c)
+      import
+      type(TetcastTraceDesc) :: answer
+    end function
+
+    function tetcast_volume_trace(volume, rays, desc, function, user) result(status) bind(c)
+      import
+      type(c_ptr), value :: volume
+      type(TetcastRays), intent(in) :: rays
+      type(TetcastTraceDesc), intent(in) :: desc
+      type(c_funptr), value :: function
+      type(c_ptr), value :: user
+      integer(c_int) :: status
+    end function
+
+    ! fragments.h: parts of a mesh
+    function tetcast_fragments_create(context, fragments) result(status) bind(c)
+      import
+      type(c_ptr), value :: context
+      type(c_ptr), intent(out) :: fragments
+      integer(c_int) :: status
+    end function
+
+    subroutine tetcast_fragments_destroy(fragments) bind(c)
+      import
+      type(c_ptr), intent(inout) :: fragments
+    end subroutine
+
+    function tetcast_fragments_list(fragments) result(answer) bind(c)
+      import
+      type(c_ptr), value :: fragments
+      type(TetcastFragmentList) :: answer
+    end function
+
+    function tetcast_scene_render_fragments(scene, camera, desc, width, height, fragments, stats) result(status) bind(c)
+      import
+      type(c_ptr), value :: scene
+      type(TetcastCamera), intent(in) :: camera
+      type(TetcastRenderDesc), intent(in) :: desc
+      integer(c_int64_t), value :: width, height
+      type(c_ptr), value :: fragments
+      type(TetcastRenderStats), intent(out) :: stats
+      integer(c_int) :: status
+    end function
+
+    function tetcast_fragments_composite(context, lists, count, frame, overlap) result(status) bind(c)
+      import
+      type(c_ptr), value :: context
+      type(TetcastFragmentList), intent(in) :: lists(*)
+      integer(c_int64_t), value :: count
+      type(c_ptr), value :: frame
+      real(c_double), intent(out) :: overlap
       integer(c_int) :: status
     end function
 
