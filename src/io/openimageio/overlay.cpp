@@ -20,7 +20,8 @@ constexpr const char *fonts[] = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.tt
                                  "/usr/share/fonts/truetype/liberation2/LiberationSans-Regular.ttf",
                                  "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
                                  "/usr/share/fonts/truetype/freefont/FreeSans.ttf",
-                                 "/usr/share/fonts/opentype/urw-base35/NimbusSans-Regular.otf"};
+                                 "/usr/share/fonts/opentype/urw-base35/NimbusSans-Regular.otf",
+                                 "/usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf"};
 
 std::string find_font() {
   for (const char *font : fonts)
