@@ -62,7 +62,7 @@ static TetcastStatus make_thin(Casting *casting) {
   for (int64_t i = 0; i < scene->transfer->extinction_count; ++i)
     largest = fmax(largest, ldexp(scene->transfer->extinction[2 * i + 1], scene->volume->exponent));
   casting->thinner = largest > 0.25 ? ilogb(fmin(largest, TC_LARGEST_EXTINCTION)) + 2 : 0;
-  TetcastTransferFunction *given;
+  TetcastTransferFunction *given = NULL;
   TetcastStatus status = tc_transfer_create(scene->context, &desc, &given);
   if (!status)
     status = tc_transfer_rescale(scene->context, given, scene->values->exponent,
