@@ -38,14 +38,27 @@ typedef struct Shares {
   double range[2], bin[BINS];
 } Shares;
 
-static TetcastStatus find_shares(TetcastContext *context, const TetcastMesh *mesh, const TetcastField *field,
-                                 const double range[2], Shares *shares) {
+/* What is found from the data. */
+typedef struct Data {
+  TetcastContext *context;
+  const TetcastMesh *mesh;
+  const TetcastField *field;
+  double range[2]; /* of all values */
+  Shares last;     /* what was found last, as it is asked for again; with an empty range: nothing yet */
+} Data;
+
+static TetcastStatus find_shares(Data *data, const double range[2], Shares *shares) {
+  Shares *last = &data->last;
+  if (range[0] < range[1] && last->range[0] == range[0] && last->range[1] == range[1]) {
+    *shares = *last;
+    return TETCAST_OK;
+  }
   TetcastStatisticsDesc desc = tetcast_statistics_desc_default();
   TetcastStatistics *statistics = NULL;
   memcpy(desc.range, range, sizeof desc.range);
   memcpy(shares->range, range, sizeof desc.range);
   desc.bins = BINS;
-  const TetcastStatus status = tetcast_statistics_create(context, mesh, field, &desc, &statistics);
+  const TetcastStatus status = tetcast_statistics_create(data->context, data->mesh, data->field, &desc, &statistics);
   if (status != TETCAST_OK)
     return status;
   for (int i = 0; i < BINS; i++)
@@ -54,7 +67,8 @@ static TetcastStatus find_shares(TetcastContext *context, const TetcastMesh *mes
     shares->bin[0] += statistics->below / statistics->total;
     shares->bin[BINS - 1] += statistics->above / statistics->total;
   }
-  tetcast_statistics_destroy(context, &statistics);
+  tetcast_statistics_destroy(data->context, &statistics);
+  *last = *shares;
   return TETCAST_OK;
 }
 
@@ -76,17 +90,9 @@ static double find_quantile(const Shares *shares, double part, double power) {
   return shares->range[1];
 }
 
-/* What is found from the data. */
-typedef struct Data {
-  TetcastContext *context;
-  const TetcastMesh *mesh;
-  const TetcastField *field;
-  double range[2]; /* of all values */
-} Data;
-
 /* The same in equal parts of the logarithm to base 10, from that of `low` to that of `high`. What lies below goes to
  * *below, not to the first bin. Bins of equal width tell three decades apart: so many at a time. */
-static TetcastStatus find_decades(const Data *data, double low, double high, Shares *decades, double *below) {
+static TetcastStatus find_decades(Data *data, double low, double high, Shares *decades, double *below) {
   double passed[BINS + 1]; /* the part of the volume below each edge */
   const double least = log10(low), step = (log10(high) - least) / BINS;
   decades->range[0] = least;
@@ -95,7 +101,7 @@ static TetcastStatus find_decades(const Data *data, double low, double high, Sha
   for (double top = high; edge >= 0; top /= 1000) {
     Shares shares;
     const double range[2] = {0, top};
-    const TetcastStatus status = find_shares(data->context, data->mesh, data->field, range, &shares);
+    const TetcastStatus status = find_shares(data, range, &shares);
     if (status != TETCAST_OK)
       return status;
     double sum[BINS + 1] = {0};
@@ -118,7 +124,7 @@ static TetcastStatus find_decades(const Data *data, double low, double high, Sha
 /* ── the map ── */
 
 /* Narrows the range until rare values fill it, but single ones don't stretch it. */
-static TetcastStatus narrow(const Data *data, double range[2], Shares *shares) {
+static TetcastStatus narrow(Data *data, double range[2], Shares *shares) {
   for (int i = 0; i < 4; i++) {
     const double low = find_quantile(shares, 0.01, 0.3), high = find_quantile(shares, 0.99, 0.3);
     const double width = range[1] / 2 - range[0] / 2, step = width / BINS;
@@ -130,7 +136,7 @@ static TetcastStatus narrow(const Data *data, double range[2], Shares *shares) {
       range[0] = low - 2 * step;
       range[1] = high + 2 * step;
     }
-    const TetcastStatus status = find_shares(data->context, data->mesh, data->field, range, shares);
+    const TetcastStatus status = find_shares(data, range, shares);
     if (status != TETCAST_OK || wide)
       return status;
   }
@@ -140,7 +146,7 @@ static TetcastStatus narrow(const Data *data, double range[2], Shares *shares) {
 /* Whether all but a twentieth of the volume, not counting what is 0 or as good as that, has values below a twentieth of
  * the largest: in linear colours that would be one of them, with a speck. And the range of those that are not quite
  * rare. */
-static TetcastStatus find_log_range(const Data *data, bool asked, double range[2], bool *found) {
+static TetcastStatus find_log_range(Data *data, bool asked, double range[2], bool *found) {
   const double most = data->range[1], least = fmax(data->range[0], most * pow(10, -DECADES));
   Shares decades;
   double below;
@@ -164,7 +170,7 @@ static void center_range(double center, const double reach[2], double range[2]) 
   range[1] = fmin(center + half, DBL_MAX);
 }
 
-static TetcastStatus find_map(const Data *data, const DesignDesc *desc, Design *design) {
+static TetcastStatus find_map(Data *data, const DesignDesc *desc, Design *design) {
   DesignMap *map = &design->map;
   Shares shares;
   memcpy(map->range, desc->range ? desc->range : data->range, sizeof map->range);
@@ -176,7 +182,7 @@ static TetcastStatus find_map(const Data *data, const DesignDesc *desc, Design *
       center_range(*desc->center, map->range, map->range);
     return TETCAST_OK;
   }
-  TetcastStatus status = find_shares(data->context, data->mesh, data->field, data->range, &shares);
+  TetcastStatus status = find_shares(data, data->range, &shares);
   if (status != TETCAST_OK)
     return status;
   const double low = find_quantile(&shares, 0.01, 0.3), high = find_quantile(&shares, 0.99, 0.3);
@@ -214,12 +220,11 @@ static TetcastStatus find_map(const Data *data, const DesignDesc *desc, Design *
 /* ── extinctions ── */
 
 /* Shares of the volume in equal parts of the map. */
-static TetcastStatus share_map(const Data *data, const DesignMap *map, double share[SHARES]) {
+static TetcastStatus share_map(Data *data, const DesignMap *map, double share[SHARES]) {
   Shares shares;
   double below = 0;
-  const TetcastStatus status = map->logarithmic
-                                   ? find_decades(data, map->range[0], map->range[1], &shares, &below)
-                                   : find_shares(data->context, data->mesh, data->field, map->range, &shares);
+  const TetcastStatus status = map->logarithmic ? find_decades(data, map->range[0], map->range[1], &shares, &below)
+                                                : find_shares(data, map->range, &shares);
   memset(share, 0, sizeof(double) * SHARES);
   for (int i = 0; status == TETCAST_OK && i < BINS; i++)
     share[i / (BINS / SHARES)] += shares.bin[i] + (i == 0 ? below : 0);
