@@ -86,3 +86,18 @@ const CliImage *cli_image(void) {
   static CliImage image;
   return image.image_write || load(SONAME("openimageio"), "writing an image", image_symbols, &image) ? &image : NULL;
 }
+
+TetcastStatus cli_write_pixels(TetcastContext *context, const char *path, float *pixels, int64_t width, int64_t height,
+                               const TetcastImageDesc *desc) {
+  TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
+  frame_desc.width = width;
+  frame_desc.height = height;
+  frame_desc.type = TETCAST_TYPE_FLOAT32;
+  frame_desc.pixels = pixels;
+  TetcastFrame *frame = NULL;
+  TetcastStatus status = tetcast_frame_create(context, &frame_desc, &frame);
+  if (status == TETCAST_OK)
+    status = cli_image()->image_write(context, path, frame, desc);
+  tetcast_frame_destroy(&frame);
+  return status;
+}

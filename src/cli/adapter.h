@@ -68,4 +68,8 @@ const CliVtk *cli_vtk(void);
 const CliTetgen *cli_tetgen(void);
 const CliImage *cli_image(void);
 
+/* Writes float pixels [height][width][4], red, green, blue and alpha, premultiplied, as an image. */
+TetcastStatus cli_write_pixels(TetcastContext *context, const char *path, float *pixels, int64_t width, int64_t height,
+                               const TetcastImageDesc *desc);
+
 #endif

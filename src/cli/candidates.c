@@ -136,10 +136,12 @@ static void add_all(Candidates *c) {
 }
 
 TetcastStatus candidates_find(TetcastContext *context, const TetcastMesh *mesh, const TetcastField *field,
-                              const DesignDesc *desc, Candidates *c) {
+                              const DesignDesc *desc, const Design *first, Candidates *c) {
   *c = (Candidates){.count = 1};
   c->candidate[0] = (Candidate){.name = "balanced", .words = "every range of colours about as much as any other"};
-  TetcastStatus status = design_find(context, mesh, field, desc, &c->candidate[0].design);
+  if (first)
+    c->candidate[0].design = *first;
+  TetcastStatus status = first ? TETCAST_OK : design_find(context, mesh, field, desc, &c->candidate[0].design);
   const double *range = c->candidate[0].design.map.range;
   if (status != TETCAST_OK)
     return status;

@@ -21,9 +21,10 @@ typedef struct Candidates {
   TetcastStatistics *statistics; /* over the range of the colour map, with gradients */
 } Candidates;
 
-/* Finds them; the first is what a picture has of which nothing is said. The result is for candidates_release(). */
+/* Finds them; the first is what a picture has of which nothing is said: `first`, where that has been found already,
+ * else NULL. The result is for candidates_release(). */
 TetcastStatus candidates_find(TetcastContext *context, const TetcastMesh *mesh, const TetcastField *field,
-                              const DesignDesc *desc, Candidates *candidates);
+                              const DesignDesc *desc, const Design *first, Candidates *candidates);
 
 void candidates_release(TetcastContext *context, Candidates *candidates);
 

@@ -57,20 +57,11 @@ static TetcastStatus write_picture(TetcastContext *context, const char *path) {
     captions[i] = (TetcastCaption){.text = tetcast_preset_name(i), .x = MARGIN, .y = top + BAR_HEIGHT / 2, .size = 16};
     status = draw_bar(context, captions[i].text, pixels + 4 * (top * WIDTH + WIDTH - MARGIN - BAR_WIDTH));
   }
-  TetcastFrameDesc desc = tetcast_frame_desc_default();
-  desc.width = WIDTH;
-  desc.height = height;
-  desc.type = TETCAST_TYPE_FLOAT32;
-  desc.pixels = pixels;
-  TetcastFrame *frame = NULL;
-  if (status == TETCAST_OK)
-    status = tetcast_frame_create(context, &desc, &frame);
   TetcastImageDesc image = cli_image()->image_desc_default();
   image.captions = captions;
   image.caption_count = count;
   if (status == TETCAST_OK)
-    status = cli_image()->image_write(context, path, frame, &image);
-  tetcast_frame_destroy(&frame);
+    status = cli_write_pixels(context, path, pixels, WIDTH, height, &image);
   free(pixels);
   return status;
 }

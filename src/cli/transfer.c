@@ -74,7 +74,8 @@ static int find(Proposal *p) {
   if (code != CLI_DONE)
     return code;
   const DesignDesc desc = stage_design_desc(stage, &p->options);
-  TetcastStatus status = candidates_find(stage->context, stage->mesh, stage->field, &desc, &p->candidates);
+  TetcastStatus status = candidates_find(stage->context, stage->mesh, stage->field, &desc,
+                                         stage->designed ? &stage->design : NULL, &p->candidates);
   for (int i = 0; i < p->candidates.count && status == TETCAST_OK; i++)
     status = stage_shade_design(stage, &p->options, &p->candidates.candidate[i].design,
                                 p->candidates.candidate[i].preset, &p->functions[i]);
@@ -125,22 +126,13 @@ static int write_sheet(const Proposal *p) {
       status = render(p, i, pixels + 4 * (y * sheet_width + x), sheet_width);
   }
   cli_progress_clear();
-  TetcastFrameDesc desc = tetcast_frame_desc_default();
-  desc.width = sheet_width;
-  desc.height = sheet_height;
-  desc.type = TETCAST_TYPE_FLOAT32;
-  desc.pixels = pixels;
-  TetcastFrame *frame = NULL;
-  if (status == TETCAST_OK)
-    status = tetcast_frame_create(p->stage.context, &desc, &frame);
   TetcastImageDesc image = cli_image()->image_desc_default();
   static const double light[4] = {0.93, 0.945, 0.965, 1};
   memcpy(image.background, light, sizeof light);
   image.captions = captions;
   image.caption_count = (int)count;
   if (status == TETCAST_OK && !cli_interrupted())
-    status = cli_image()->image_write(p->stage.context, p->options.sheet, frame, &image);
-  tetcast_frame_destroy(&frame);
+    status = cli_write_pixels(p->stage.context, p->options.sheet, pixels, sheet_width, sheet_height, &image);
   for (int i = 0; i < count; i++)
     free(words[i]);
   free(pixels);
