@@ -9,6 +9,8 @@
 ! * Arrays have their first index where C has its last: vertices are 3 × n, tetrahedra 4 × m, pixels 4 × width × height.
 !   What is referred to (TETCAST_BORROW, pixels of a frame, arrays in a desc) needs the attribute `target`.
 ! * Text goes in as "text" // c_null_char, and comes out as a type(c_ptr), of which tetcast_string() makes a string.
+! It is one file, as whoever uses it compiles it with their own sources, and one module, as structs refer to each other.
+!
 ! * tetcast_context_error() and tetcast_context_message() are missing, as they take arguments of any number and type.
 module tetcast
   use, intrinsic :: iso_c_binding

@@ -34,7 +34,7 @@ contains 'volume +1$'
 # The manual's list is that of a build with everything.
 accept info --formats
 contains 'VTK XML, unstructured grid +[.]vtu'
-manual=$(sed -n 's/^| \(.*[^ ]\)  *| \(.*\) |$/\1  \2/p' "$source/src/cli/tetcast.1" | sed 's/   */  /')
+manual=$(sed -n 's/^| \(.*[^ ]\)  *| \(.*\) |$/\1  \2/p' "$source/src/cli/tetcast-files.7" | sed 's/   */  /')
 while read -r row; do
   format=$(sed 's/   *.*//' <<<"$row") extensions=$(sed 's/.*   *//' <<<"$row")
   checks=$((checks + 1))

@@ -121,7 +121,9 @@ unset LD_LIBRARY_PATH
 # 3. The command finds its libraries where the tree now lies.
 if [ -x "$prefix/bin/tetcast" ]; then
   quietly "$prefix/bin/tetcast" --version
-  [ -n "$(find "$prefix" -name 'tetcast.1*')" ] || fail "the manual page is not installed"
+  for page in tetcast.1 tetcast-render.1 tetcast-files.7; do
+    [ -n "$(find "$prefix" -name "$page*")" ] || fail "the manual page $page is not installed"
+  done
   for file in bash-completion/completions/tetcast zsh/site-functions/_tetcast fish/vendor_completions.d/tetcast.fish; do
     [ -s "$prefix/share/$file" ] || fail "share/$file is not installed"
   done
