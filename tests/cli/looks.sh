@@ -21,6 +21,12 @@ first() {
 
 "$looks" make . || fail 'looks make'
 for file in *.vtk; do first "$file"; done
+# Eleven decades are told apart by their logarithm, both signs from their middle, others alike.
+for pair in decades:logarithmic density:logarithmic signs:diverging front:linear sparse:linear; do
+  checks=$((checks + 1))
+  "$tetcast" render "${pair%:*}.vtk" -o picture.png --size 16x12 --stats stats.json --quiet
+  grep -q "\"scale\": \"${pair#*:}\"" stats.json || fail "$pair: $(grep scale stats.json)"
+done
 for mesh in heat hydrogen shell trefoil; do first "$here/../../meshes/$mesh.vtu"; done
 if [ -d "$data/volumes" ]; then
   for array in Density Pressure VelocityMagnitude; do first "$data/volumes/bluntfin_tet.vtu" --array $array; done
