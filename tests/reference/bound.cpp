@@ -235,7 +235,7 @@ void see_edge_on(Random &random, Case &c) {
   Camera &camera = c.scene.camera;
   camera = {};
   camera.orthographic = true;
-  camera.height = random.power(-18, -5);
+  camera.height = random.power(-18, random.chance(0.5) ? -14 : -5);
   const double tilt = random.chance(0.5) ? 0 : random.power(-18, -6),
                plane = within ? double(random.below(n + 1)) / n : random.below(2);
   for (int k = 0; k < 3; k++) {
@@ -311,7 +311,7 @@ Case random_case(uint64_t seed) {
   c.scene.mesh = random_mesh(random, c.kind, size, middle);
   c.scene.transfer = random_transfer(random, size);
   c.scene.camera = random_camera(random, size, middle, c.kind);
-  if (random.chance(0.1)) {
+  if (random.chance(0.15)) {
     see_edge_on(random, c);
     size = 1;
     std::copy(c.scene.camera.target, c.scene.camera.target + 3, middle.begin());
