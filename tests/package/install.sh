@@ -37,7 +37,7 @@ done
 
 # run FOLDER: the examples that were built there.
 run() {
-  for example in minimal diffusion ${FORTRAN:+heat}; do
+  for example in minimal diffusion sight ${FORTRAN:+heat}; do
     (cd "$1" && quietly "./$example" && cp "$work/log" "$example.log") || exit 1
   done
   for picture in minimal.ppm "$2"; do
@@ -100,6 +100,8 @@ cd "$source/tests/examples"
 quietly "$CC" minimal.c $(pkg-config --cflags --libs tetcast) -o "$work/pkg-config/minimal"
 # shellcheck disable=SC2046
 quietly "$CC" diffusion.c kuhn.c $(pkg-config --cflags --libs tetcast) -lm -o "$work/pkg-config/diffusion"
+# shellcheck disable=SC2046
+quietly "$CC" sight.c kuhn.c $(pkg-config --cflags --libs tetcast) -lm -o "$work/pkg-config/sight"
 if [ -n "${FORTRAN-}" ]; then
   # shellcheck disable=SC2046
   (cd "$work/pkg-config" && quietly "$FORTRAN" "$(pkg-config --variable=fortran tetcast)" "$source/tests/examples/heat.f90" \
