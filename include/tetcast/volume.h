@@ -58,9 +58,9 @@ TETCAST_API TetcastVolumeDesc tetcast_volume_desc_default(void);
  *
  * Cells need not share vertices to be neighbours. Vertices of different cells count as one place if they lie within
  * four units in the last place of the mesh's largest coordinate along each axis, in the precision that the mesh has,
- * unless one cell has both of them. So there are no gaps in files in which each cell has points of its own. Values stay
- * each vertex's own, so that a point field may jump between such cells. Where there are such vertices, this takes time,
- * and 16 bytes for each tetrahedron.
+ * unless one cell has both of them, or one's volume would change by more than an eighth. So there are no gaps in files
+ * in which each cell has points of its own. Values stay each vertex's own, so that a point field may jump between such
+ * cells. Where there are such vertices, this takes time, and 16 bytes for each tetrahedron.
  *
  * Where memory is refused, the call fails with TETCAST_ERROR_MEMORY, also if that happens beneath the library. There is
  * one exception: Embree and TBB allocate for themselves, and not all of their code copes with a refusal. So what they

@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 /* A hash table of the cells of a grid, which are four times as wide as the tolerance. Each has a list of the vertices
  * in it that have no earlier one at their place. */
@@ -93,15 +94,52 @@ static int64_t find_all(Grid *grid, const uint32_t *vertices, int64_t count, uin
   return found;
 }
 
-/* Marks those with which vertices of one cell would become one, though the cell has two of them. `place`: for each of
- * the mesh's vertices its number among the candidates plus one. */
-static void find_thin_cells(const TetcastMesh *mesh, const uint32_t *place, const uint32_t *with, uint32_t *thin) {
+/* Six times the volume of a tetrahedron. Its vertices are so near to each other that their differences are exact, or
+ * so far apart that it doesn't matter. */
+static double six_volumes(double p[4][3]) {
+  double a[3][3];
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k)
+      a[i][k] = p[i + 1][k] - p[0][k];
+  }
+  return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+         a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
+}
+
+/* Whether a cell becomes another one if its vertices v take the places of the vertices `to`: its volume is no longer
+ * the same but for an eighth. */
+static bool is_deformed(const TetcastMesh *mesh, const uint32_t v[4], const uint32_t to[4]) {
+  double before[4][3], after[4][3];
+  for (int k = 0; k < 4; ++k) {
+    tc_mesh_vertex(mesh, v[k], before[k]);
+    tc_mesh_vertex(mesh, to[k], after[k]);
+  }
+  if (memcmp(before, after, sizeof before) == 0)
+    return false;
+  const double was = six_volumes(before), is = six_volumes(after);
+  return !(fabs(is - was) <= 0.125 * fabs(was));
+}
+
+/* Marks those with which vertices of one cell would become one, though the cell has two of them, or that would deform a
+ * cell. `place`: for each of the mesh's vertices its number among the candidates plus one. */
+static void find_thin_cells(const TetcastMesh *mesh, const uint32_t *vertices, const uint32_t *place,
+                            const uint32_t *with, uint32_t *thin) {
   for (int64_t i = 0; i < mesh->tetrahedra.count; ++i) {
-    uint32_t v[4], own[4], is[4];
+    uint32_t v[4], own[4], is[4], to[4];
+    bool moves = false;
     tc_mesh_cell(mesh, i, v);
     for (int k = 0; k < 4; ++k) {
       own[k] = place[v[k]];
       is[k] = own[k] != NONE && with[own[k] - 1] != NONE ? with[own[k] - 1] : own[k];
+      to[k] = is[k] != own[k] ? vertices[is[k] - 1] : v[k];
+      moves = moves || is[k] != own[k];
+    }
+    if (!moves)
+      continue;
+    const bool deformed = is_deformed(mesh, v, to);
+    for (int k = 0; k < 4; ++k) {
+      if (deformed && is[k] != own[k])
+        thin[is[k] - 1] = 1;
     }
     for (int k = 1; k < 4; ++k) {
       for (int j = 0; j < k; ++j) {
@@ -126,7 +164,7 @@ static TetcastStatus weld(Grid *grid, const uint32_t *vertices, int64_t count, u
     place[vertices[i]] = (uint32_t)i + 1;
   uint32_t *const thin = grid->next; /* which has done its work */
   memset(thin, 0, (size_t)count * sizeof *thin);
-  find_thin_cells(mesh, place, with, thin);
+  find_thin_cells(mesh, vertices, place, with, thin);
   tc_release(mesh->context, place);
   for (int64_t i = 0; i < count; ++i) {
     if (with[i] == NONE || !thin[with[i] - 1])

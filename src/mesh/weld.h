@@ -18,8 +18,9 @@ typedef struct TcWeld {
 void tc_weld_tolerance(const TetcastMesh *mesh, const double bounds[6], double tolerance[3]);
 
 /* Finds among `count` vertices those that lie within the tolerance of an earlier one. If two of the
- * vertices that would become one are of the same cell, all of them stay: that cell is thin, and nothing is torn. The
- * caller frees *welds, which is NULL where there are none. */
+ * vertices that would become one are of the same cell, or a cell's volume would change by more than an eighth, all of
+ * them stay: that cell is as small as rounding, and nothing is torn or deformed. The caller frees *welds, which is NULL
+ * where there are none. */
 TetcastStatus tc_weld(const TetcastMesh *mesh, const double bounds[6], const uint32_t *vertices, int64_t count,
                       TcWeld **welds, int64_t *weld_count);
 

@@ -51,6 +51,12 @@ TC_INLINE TcVec spread_of(const unsigned on, const TcGround *ground, const TcPac
   return tc_madd(beside + beside, tilted, tc_madd(length, tc_set((TcReal)r->value), change * depth));
 }
 
+/* Whether what is seen may jump where rays go from one cell to the next: the field does, or there is nothing to be seen
+ * in some cells. */
+TC_INLINE bool jumps(const unsigned on, const TcGround *ground, const TcGatherJob *job) {
+  return on & TC_WEIGHTS ? job->coefficients->cells != NULL : on & TC_ASSOCIATIONS || ground->holes;
+}
+
 /* Gathers the segments of the cells just crossed, as far as they lie beyond the depth that was seen already and within
  * the rays' intervals. Rounding, or a cell that is turned inside out, can make a face's depth less than that of the
  * face before. Such a segment counts for nothing, and of the next one only the part beyond the depth seen counts. So
@@ -92,7 +98,7 @@ TC_INLINE TcMask add_segment(const int which, const unsigned on, const TcGround 
   passage.leaving = leaving;
   if (on & TC_BOUND)
     passage.spread = spread_of(on, ground, p, crossed, passage.length);
-  if (on & TC_BOUND && on & TC_ASSOCIATIONS && (!(on & TC_WEIGHTS) || job->coefficients->cells))
+  if (on & TC_BOUND && jumps(on, ground, job))
     p->shift += tc_select(moved, tc_packet_shift(ground, p), tc_set(0)) +
                 tc_select(passage.crossed, crossed->grazed, tc_set(0));
   tc_gather_segment(which, on, job, &packet->gather, moved, &passage);
@@ -348,6 +354,7 @@ static State *prepare(const TcJob *job, TcWorker *worker) {
   State *state = worker->state;
   state->ground = (TcGround){.shell = job->shell,
                              .values = job->values,
+                             .holes = job->values && job->values->has_holes,
                              .screen = job->screen,
                              .resolution = job->resolution,
                              .surfaces = job->surfaces};

@@ -183,8 +183,8 @@ typedef struct TcCrossed {
   TcTilt tilt;
   /* With TC_CORNERS: the difference between the largest and the smallest scalar of the cell. */
   TcVec range;
-  /* With TC_BOUND and TC_ASSOCIATIONS: over which lengths rounding may put them into neighbours of the cell, past the
-   * faces that they don't cross. */
+  /* With TC_BOUND, where what is seen may jump between cells: over which lengths rounding may put them into neighbours
+   * of the cell, past the faces that they don't cross. */
   TcVec grazed;
   /* With TC_SURFACES: the vertices of the face where they entered it, and the weights of these there. */
   TcWord id[3];
@@ -241,7 +241,7 @@ TC_INLINE TcMask tc_packet_cross(const unsigned on, const TcGround *ground, TcPa
     negative[k] = tc_and(p->active, tc_negative(e[k]));
   for (int k = 0; k < 3; ++k)
     out[k] = tc_and_not(negative[(k + 1) % 3], negative[(k + 2) % 3]);
-  if (on & TC_BOUND && on & TC_ASSOCIATIONS) {
+  if (on & TC_BOUND && (on & TC_ASSOCIATIONS || TC_UNLIKELY(ground->holes))) {
     const TcLanePoints vertex = *q;
     tc_packet_graze(ground, p, &vertex, out, &crossed->grazed);
   }

@@ -23,6 +23,7 @@
 typedef struct TcGround {
   const TcShell *shell;
   const TcRows *values;       /* the scalar; NULL if there is none */
+  bool holes;                 /* whether cells are transparent because the scalar has no value at some vertices */
   const TcScreen *screen;     /* the projected vertices; NULL if rays are walked in ray space */
   TcResolution resolution;    /* with TC_BOUND: what rounding does to vertices */
   const TcSurfaces *surfaces; /* NULL: there are none, and packets need not know the directions of their rays */
