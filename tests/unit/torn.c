@@ -196,6 +196,34 @@ static void thin_cells_stay(void **state) {
   fixture_end(&fixture);
 }
 
+/* Cells that are four units in the last place wide by themselves: none of their vertices is another one. */
+static void small_cells_stay(void **state) {
+  (void)state;
+  Fixture fixture;
+  assert_int_equal(fixture_begin(&fixture, 1, 0), TETCAST_OK);
+  Cube cube = cube_create(4, 0);
+  float *vertices = malloc((size_t)cube.vertex_count * 3 * sizeof *vertices);
+  for (uint64_t seed = 1, end = seed + 8; seed < end; ++seed) {
+    uint64_t random = seed;
+    for (int64_t i = 0; i < 3 * cube.vertex_count; ++i) /* where the unit in the last place is 1/16 */
+      vertices[i] = (float)(1e6 + cube.vertices[i] + 0.2 * (uniform(&random) - 0.5));
+    TetcastMeshDesc desc = tetcast_mesh_desc_default();
+    desc.vertices = (TetcastArray){vertices, TETCAST_TYPE_FLOAT32, cube.vertex_count, 0};
+    desc.tetrahedra = (TetcastArray){cube.cells, TETCAST_TYPE_INT64, cube.cell_count, 0};
+    TetcastMesh *mesh = NULL;
+    assert_int_equal(tetcast_mesh_create(fixture.context, &desc, &mesh), TETCAST_OK);
+    TetcastVolume *volume = volume_of(fixture.context, mesh, TETCAST_TRAVERSAL_SHELL);
+    TetcastVolumeInfo info;
+    tetcast_volume_info(volume, &info);
+    assert_int_equal(info.welded, 0);
+    tetcast_volume_destroy(&volume);
+    tetcast_mesh_destroy(&mesh);
+  }
+  free(vertices);
+  cube_destroy(&cube);
+  fixture_end(&fixture);
+}
+
 /* Cells of any vertices, some of them twice, many vertices at few places: whatever is welded, all that has an inside is
  * there. */
 static void any_cells(void **state) {
@@ -241,6 +269,7 @@ static void any_cells(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(cells_meet), cmocka_unit_test(values_jump),
-                                     cmocka_unit_test(thin_cells_stay), cmocka_unit_test(any_cells)};
+                                     cmocka_unit_test(thin_cells_stay), cmocka_unit_test(small_cells_stay),
+                                     cmocka_unit_test(any_cells)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
