@@ -12,7 +12,7 @@ complain() {
 
 for page in README.md $(find include src tests meshes -name '*.md'); do
   folder=$(dirname "$page")
-  for link in $(sed '/^```/,/^```$/d' "$page" | grep -oE '\]\([^)]+\)' | sed 's/^](//; s/)$//; s/#.*//' | sort -u); do
+  for link in $(sed '/^ *```/,/^ *```$/d' "$page" | grep -oE '\]\([^)]+\)' | sed 's/^](//; s/)$//; s/#.*//' | sort -u); do
     case $link in
       *://*) ;;
       *) [ -e "$folder/$link" ] || complain "$page links to $link, which isn't there" ;;
@@ -25,7 +25,7 @@ code=$(mktemp)
 trap 'rm -f "$code"' EXIT
 cat tests/examples/*.c tests/examples/*.f90 tests/examples/CMakeLists.txt | sed 's/^ *//' >"$code"
 for page in README.md include/README.md; do
-  awk '/^```(c|fortran|cmake)$/ { inside = 1; next } /^```$/ { inside = 0 } inside' "$page" | sed 's/^ *//' | grep -v '^$' | sort -u |
+  awk '/^ *```(c|fortran|cmake)$/ { inside = 1; next } /^ *```$/ { inside = 0 } inside' "$page" | sed 's/^ *//' | grep -v '^$' | sort -u |
     while IFS= read -r line; do
       grep -qxF -e "$line" "$code" || echo "$page: $line"
     done
