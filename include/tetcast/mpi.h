@@ -141,9 +141,11 @@ typedef struct TetcastMpiStats {
   int64_t memory;
   /* The number of bands that the picture was made in. */
   int64_t bands;
-  /* The time in seconds, of the rank that took longest, for rendering fragments. */
+  /* The time in seconds, of the rank that took longest, for rendering fragments, and sorting them by owner. */
   double render_seconds;
-  /* Likewise for sharing them out, sending and receiving them. That includes waiting for ranks that render longer. */
+  /* Likewise for waiting until all ranks have rendered theirs. */
+  double wait_seconds;
+  /* Likewise for sending and receiving them. */
   double exchange_seconds;
   /* Likewise for compositing them. */
   double composite_seconds;
