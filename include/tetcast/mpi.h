@@ -57,8 +57,8 @@ TETCAST_API int tetcast_mpi_size(const TetcastMpi *mpi);
 
 /* Sets about how many bytes tetcast_mpi_render() may need on a rank for what it renders, sends, receives and collects,
  * at least 1; the smallest number of all ranks holds. Default: 268435456, 256 MiB. Pictures are made in bands of so
- * many rows as fit; a band that turns out not to fit is made anew in smaller ones, down to single rows. Pictures don't
- * depend on it to the bit. Smaller bands take longer, as each has to project a part's vertices. */
+ * many rows as fit; a band that turns out not to fit is made anew in smaller ones, down to 16 rows. Pictures have the
+ * same bits whatever it is. Smaller bands take longer, as vertices are projected for each. */
 TETCAST_API TetcastStatus tetcast_mpi_set_memory(TetcastMpi *mpi, int64_t bytes);
 
 /* Collective. Makes what happened to one rank known to all: returns TETCAST_OK if all ranks pass it; else all return

@@ -259,7 +259,7 @@ static TetcastStatus judge(Picture *picture, TetcastStatus own, const TcMpiBand 
       *verdict = VERDICT_OTHER_ISA;
     picture->order.desc.isa = mpi->isa;
   }
-  if (*verdict == VERDICT_GOOD && *memory > mpi->memory && band->rows > 1)
+  if (*verdict == VERDICT_GOOD && *memory > mpi->memory && band->rows > TC_MPI_ROWS)
     *verdict = VERDICT_TOO_LARGE;
   return TETCAST_OK;
 }
@@ -298,10 +298,15 @@ static TetcastStatus make_band(Picture *picture, const TcMpiBand *band, Verdict 
 
 /* ── the picture ── */
 
+/* So many rows, or fewer, in whole steps. */
+static int64_t whole_steps(int64_t rows) {
+  return rows > TC_MPI_ROWS ? rows / TC_MPI_ROWS * TC_MPI_ROWS : TC_MPI_ROWS;
+}
+
 /* How many rows fit, by what a pixel has needed so far. */
 static int64_t rows_that_fit(const Picture *picture, double bytes_per_pixel) {
   const double rows = filling * (double)picture->mpi->memory / (bytes_per_pixel * (double)picture->order.width);
-  return rows >= (double)picture->order.height ? picture->order.height : rows > 1 ? (int64_t)rows : 1;
+  return rows >= (double)picture->order.height ? picture->order.height : whole_steps((int64_t)rows);
 }
 
 /* All ranks come to the same numbers here, as they come from what they have agreed upon. A band has at most twice as
@@ -324,7 +329,7 @@ static TetcastStatus make_bands(Picture *picture) {
     const int64_t fitting = rows_that_fit(picture, needed);
     if (verdict == VERDICT_TOO_LARGE) {
       tc_mpi_forget(mpi);
-      rows = fitting < band.rows / 2 ? fitting : (band.rows + 1) / 2;
+      rows = fitting < band.rows / 2 ? fitting : whole_steps(band.rows / 2);
       continue;
     }
     first += band.rows;

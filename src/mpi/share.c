@@ -9,7 +9,8 @@ enum { MOST_ROWS = 1 << 20 }; /* of a frame */
 /* ── who owns what ── */
 
 TcMpiBand tc_mpi_band(const TetcastMpi *mpi, int64_t width, int64_t first, int64_t rows) {
-  const int64_t units = ((width + TC_MPI_UNIT - 1) / TC_MPI_UNIT) | 1, most = (int64_t)MOST_ROWS * mpi->size / units;
+  const int64_t units = ((width + TC_MPI_UNIT - 1) / TC_MPI_UNIT) | 1;
+  const int64_t most = (int64_t)MOST_ROWS * mpi->size / units / TC_MPI_ROWS * TC_MPI_ROWS;
   return (TcMpiBand){width, first, rows < most ? rows : most, units};
 }
 

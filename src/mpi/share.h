@@ -9,7 +9,12 @@
 
 #include "communicator.h"
 
-enum { TC_MPI_UNIT = 64 };
+enum {
+  TC_MPI_UNIT = 64,
+  /* Bands begin at multiples of so many rows. Pictures are rendered in squares with such sides, and how rays of one
+   * square are grouped decides how their sums are rounded. */
+  TC_MPI_ROWS = 16
+};
 
 /* The rows of the frame from which fragments come and to which pixels go. */
 typedef struct TcMpiBand {
