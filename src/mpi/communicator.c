@@ -44,6 +44,23 @@ TetcastStatus tetcast_mpi_agree(TetcastMpi *mpi, TetcastStatus own) {
   return mpi ? tc_mpi_agree(mpi, own, NULL, 0) : TETCAST_ERROR_ARGUMENT;
 }
 
+/* ── instruction sets ── */
+
+void tc_mpi_note_isa(const char *name, int64_t isa[2]) {
+  const int64_t number = !strcmp(name, "scalar") ? TETCAST_ISA_SCALAR
+                         : !strcmp(name, "avx2") ? TETCAST_ISA_AVX2
+                                                 : TETCAST_ISA_AVX512;
+  isa[0] = isa[0] > number ? isa[0] : number;
+  isa[1] = isa[1] > -number ? isa[1] : -number;
+}
+
+bool tc_mpi_one_isa(TetcastMpi *mpi, const int64_t isa[2]) {
+  const bool one = isa[0] == INT64_MIN || isa[0] == -isa[1];
+  if (!one)
+    mpi->isa = (TetcastIsa)-isa[1];
+  return one;
+}
+
 /* ── buffers ── */
 
 TetcastStatus tc_mpi_grow(TetcastMpi *mpi, TcMpiBuffer *buffer, int64_t bytes) {

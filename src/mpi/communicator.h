@@ -39,7 +39,7 @@ struct TetcastMpi {
   TcMpiBuffer pixels;     /* at rank 0, what it collects */
   int64_t *counts;        /* [2 · size] */
   double bytes_per_pixel; /* that the last picture needed on the rank that needed most */
-  TetcastIsa isa;         /* the largest instruction set that all ranks have, AUTO: not known */
+  TetcastIsa isa;         /* the largest instruction set that all ranks have; AUTO: no difference is known */
 };
 
 /* Sends the message that MPI has for a code; TETCAST_OK for MPI_SUCCESS, else TETCAST_ERROR_IO. */
@@ -47,6 +47,14 @@ TetcastStatus tc_mpi_check(TetcastMpi *mpi, int code, const char *function);
 
 /* As tetcast_mpi_agree(); besides, maxima [count ≤ 7] become the largest of all ranks, if it succeeds. */
 TetcastStatus tc_mpi_agree(TetcastMpi *mpi, TetcastStatus own, int64_t *maxima, int count);
+
+/* Notes the instruction set that something was rendered with in isa[2], which begin as INT64_MIN: the largest, and the
+ * smallest times −1. */
+void tc_mpi_note_isa(const char *name, int64_t isa[2]);
+
+/* Whether all ranks have used the same, by the largest of their isa[2]. If not, no larger one than the smallest is to
+ * be used from now on. */
+bool tc_mpi_one_isa(TetcastMpi *mpi, const int64_t isa[2]);
 
 /* How many requests a message of so many bytes takes. */
 static inline int64_t tc_mpi_pieces(int64_t bytes) {

@@ -125,14 +125,10 @@ static bool tell(void *data, double fraction) {
   return !told->user.function || told->user.function(told->user.user, told->reached);
 }
 
-static TetcastIsa isa_of(const char *name) {
-  return !strcmp(name, "scalar") ? TETCAST_ISA_SCALAR : !strcmp(name, "avx2") ? TETCAST_ISA_AVX2 : TETCAST_ISA_AVX512;
-}
-
 /* What a band has needed, and found, on this rank. */
 typedef struct Yield {
   int64_t memory, fragments, segments, lost;
-  TetcastIsa isa; /* AUTO: nothing was rendered */
+  int64_t isa[2]; /* tc_mpi_note_isa() */
 } Yield;
 
 static TetcastStatus render_part(Picture *picture, const TcMpiBand *band, const TetcastScene *scene, Yield *yield) {
@@ -155,7 +151,7 @@ static TetcastStatus render_part(Picture *picture, const TcMpiBand *band, const 
   yield->fragments += list.count;
   yield->segments += stats.segments;
   yield->lost += stats.lost;
-  yield->isa = isa_of(stats.isa);
+  tc_mpi_note_isa(stats.isa, yield->isa);
   return tc_mpi_post(mpi, band, list);
 }
 
@@ -246,19 +242,14 @@ typedef enum Verdict { VERDICT_GOOD, VERDICT_TOO_LARGE, VERDICT_OTHER_ISA } Verd
 static TetcastStatus judge(Picture *picture, TetcastStatus own, const TcMpiBand *band, const Yield *yield,
                            Verdict *verdict, int64_t *memory) {
   TetcastMpi *mpi = picture->mpi;
-  const bool rendered = yield->isa != TETCAST_ISA_AUTO;
-  int64_t most[3] = {*memory, rendered ? (int64_t)yield->isa : INT64_MIN, rendered ? -(int64_t)yield->isa : INT64_MIN};
+  int64_t most[3] = {*memory, yield->isa[0], yield->isa[1]};
   const TetcastStatus status = tc_mpi_agree(mpi, own, most, 3);
   if (status)
     return status;
   *memory = most[0];
-  *verdict = VERDICT_GOOD;
-  if (most[1] != INT64_MIN) {
-    mpi->isa = (TetcastIsa)-most[2];
-    if (most[1] != -most[2])
-      *verdict = VERDICT_OTHER_ISA;
-    picture->order.desc.isa = mpi->isa;
-  }
+  *verdict = tc_mpi_one_isa(mpi, most + 1) ? VERDICT_GOOD : VERDICT_OTHER_ISA;
+  if (most[1] != INT64_MIN) /* it was that, or is to be */
+    picture->order.desc.isa = (TetcastIsa)-most[2];
   if (*verdict == VERDICT_GOOD && *memory > mpi->memory && band->rows > TC_MPI_ROWS)
     *verdict = VERDICT_TOO_LARGE;
   return TETCAST_OK;
@@ -269,7 +260,7 @@ static TetcastStatus make_band(Picture *picture, const TcMpiBand *band, Verdict 
   TetcastMpi *mpi = picture->mpi;
   TetcastMpiStats *stats = &picture->stats;
   TetcastFrame *units = NULL;
-  Yield yield = {0};
+  Yield yield = {.isa = {INT64_MIN, INT64_MIN}};
   const double begin = MPI_Wtime();
   TetcastStatus status = picture->pending ? picture->pending : render_parts(picture, band, &yield);
   const double rendered = MPI_Wtime();
