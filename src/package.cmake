@@ -14,7 +14,7 @@ install(EXPORT tetcast-targets NAMESPACE tetcast:: DESTINATION ${package_dir})
 install(FILES fortran/tetcast.f90 DESTINATION ${CMAKE_INSTALL_DATADIR}/tetcast)
 file(RELATIVE_PATH to_data ${CMAKE_INSTALL_PREFIX}/${package_dir} ${CMAKE_INSTALL_FULL_DATADIR}/tetcast)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/package/tetcast-config.cmake @ONLY CONTENT [[
-# find_package(tetcast [COMPONENTS vtk tetgen openimageio fortran]): target tetcast::tetcast, and one for each adapter that is installed.
+# find_package(tetcast [COMPONENTS vtk tetgen openimageio mpi fortran]): target tetcast::tetcast, and one for each adapter that is installed.
 # tetcast::fortran is the Fortran module, compiled with the project that uses it, which must have enabled Fortran.
 include("${CMAKE_CURRENT_LIST_DIR}/tetcast-targets.cmake")
 if("fortran" IN_LIST tetcast_FIND_COMPONENTS AND CMAKE_Fortran_COMPILER AND NOT TARGET tetcast_fortran)

@@ -78,7 +78,7 @@ TETCAST_API TetcastStatus tetcast_mpi_range(TetcastMpi *mpi, double range[2]);
 /* Collective. Adds up values [parts][count] of all parts of all ranks to sums [count], which all ranks get, with the
  * same bits however parts are shared out and in whatever order they come. `parts` may be 0 and `values` NULL then;
  * `count` ≥ 0 must be the same for all ranks (TETCAST_ERROR_ARGUMENT). Sums are those of the exact sum, but for one
- * rounding, and for what is below 2^−80 of the largest of the values that are added up. Sums of infinities and NaN are
+ * rounding, and for what is below 2^−120 of the largest of the values that are added up. Sums of infinities and NaN are
  * as by addition. At most 2^22 parts in all (TETCAST_ERROR_LIMIT). */
 TETCAST_API TetcastStatus tetcast_mpi_sum(TetcastMpi *mpi, const double *values, int64_t parts, int64_t count,
                                           double *sums);

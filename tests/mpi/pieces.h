@@ -18,7 +18,9 @@ typedef enum Split { SPLIT_BOXES, SPLIT_WAVY, SPLIT_SCATTER, SPLITS } Split;
 /* How pieces are dealt out to ranks: in turn, to the last rank, or to the first ones. */
 typedef enum Deal { DEAL_IN_TURN, DEAL_LAST, DEAL_FIRST, DEALS } Deal;
 
-enum { MOST_PIECES = 40 };
+#ifndef MOST_PIECES
+#define MOST_PIECES 40
+#endif
 
 typedef struct Pieces {
   int count; /* of this rank */
