@@ -57,7 +57,7 @@ static int measure(const Run *run) {
   ranks_begin(&ranks, world_size());
   TetcastContext *context = ranks.fixture.context;
   assert_int_equal(tetcast_context_set_threads(context, run->threads), TETCAST_OK);
-  Cube cube = cube_create(run->n, 0.5);
+  Cube cube = cube_create(run->n, 0.4);
   static Pieces pieces;
   pieces = pieces_of(context, &cube, run->split, run->pieces, DEAL_IN_TURN, ranks.rank, ranks.size);
   cube_destroy(&cube);
