@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* scale N SIZE PARTITION PIECES THREADS [FRAMES]: how long a picture of SIZE² pixels of a cube of 6 N³ tetrahedra takes
- * on the ranks that run this, and what goes between them. PARTITION: boxes, wavy or scatter, into so many PIECES, which
+ * on the ranks that run this, and what goes between them: of the fastest of FRAMES. PARTITION: boxes, wavy or scatter, into so many PIECES, which
  * ranks have in turn; THREADS for each rank. One line of numbers, whose names are printed by `scale` without arguments.
  */
 #define MOST_PIECES 4096
@@ -17,11 +17,6 @@ static double peak_memory(void) {
   return 1024. * (double)usage.ru_maxrss;
 }
 
-static double total_of(const TetcastMpiStats *s) {
-  return s->render_seconds + s->wait_seconds + s->exchange_seconds + s->composite_seconds + s->gather_seconds;
-}
-
-/* The frame of which the clock's time is the median. */
 static int by_time(const void *a, const void *b) {
   const double x = ((const double *)a)[0], y = ((const double *)b)[0];
   return (x > y) - (x < y);
@@ -42,7 +37,7 @@ typedef struct Run {
   Split split;
 } Run;
 
-static void report(const Run *run, const Ranks *ranks, const TetcastFrame *frame, const double best[8],
+static void report(const Run *run, const Ranks *ranks, const TetcastFrame *frame, const double best[6],
                    const TetcastMpiStats *stats, double memory) {
   const double seen = seen_of(frame, run->size * run->size);
   printf("%s %d %d %d %lld %lld %.4f %lld %lld %lld %lld %.0f %.4f %.4f %.4f %.4f %.4f %.4f %lld %.1e\n",
@@ -75,15 +70,15 @@ static int measure(const Run *run) {
       return 1;
     if (i >= 0)
       memcpy(times[i],
-             &(double[8]){MPI_Wtime() - begin, stats.render_seconds, stats.wait_seconds, stats.exchange_seconds,
-                          stats.composite_seconds, stats.gather_seconds, total_of(&stats)},
+             &(double[6]){MPI_Wtime() - begin, stats.render_seconds, stats.wait_seconds, stats.exchange_seconds,
+                          stats.composite_seconds, stats.gather_seconds},
              sizeof *times);
   }
   qsort(times, (size_t)run->frames, sizeof *times, by_time);
   double memory = peak_memory(), most;
   MPI_Reduce(&memory, &most, 1, MPI_DOUBLE, MPI_MAX, 0, MPI_COMM_WORLD);
   if (ranks.rank == 0)
-    report(run, &ranks, frame, times[run->frames / 2], &stats, most);
+    report(run, &ranks, frame, times[0], &stats, most);
   free(times);
   tetcast_frame_destroy(&frame);
   pieces_end(&pieces);
@@ -103,7 +98,7 @@ int main(int argc, char **argv) {
              .size = atoi(argv[2]),
              .pieces = atoi(argv[4]),
              .threads = atoi(argv[5]),
-             .frames = argc > 6 ? atoi(argv[6]) : 3};
+             .frames = argc > 6 ? atoi(argv[6]) : 5};
   while (run.split < SPLITS && strcmp(names[run.split], argv[3]) != 0)
     ++run.split;
   if (run.split == SPLITS || run.pieces < 1 || run.pieces > MOST_PIECES || run.n < 1 || run.frames < 1) {
