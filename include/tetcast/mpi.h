@@ -67,8 +67,8 @@ TETCAST_API TetcastStatus tetcast_mpi_set_memory(TetcastMpi *mpi, int64_t bytes)
 TETCAST_API TetcastStatus tetcast_mpi_agree(TetcastMpi *mpi, TetcastStatus own);
 
 /* Collective. Replaces a rank's bounds, xmin, xmax, ymin, ymax, zmin, zmax, by those of all ranks. A rank that has
- * nothing passes some minimum above its maximum, and infinities −∞ < ∞ of that kind are what all get if none has. NaN
- * is TETCAST_ERROR_ARGUMENT. */
+ * nothing passes a minimum above its maximum along some axis; if none has anything, all get ∞, −∞ three times. NaN is
+ * TETCAST_ERROR_ARGUMENT. */
 TETCAST_API TetcastStatus tetcast_mpi_bounds(TetcastMpi *mpi, double bounds[6]);
 
 /* Collective. Replaces a rank's range, minimum and maximum, by that of all ranks. A rank that has no values passes a
@@ -106,9 +106,10 @@ TETCAST_API TetcastStatus tetcast_mpi_receive(TetcastMpi *mpi, int from, void *d
 
 /* Collective. Makes the transfer function that tetcast_scene_scale_transfer_function() makes for one scene, up to
  * rounding, for all parts of all ranks: scenes [count], each with a field. `scenes` may be NULL where count is 0.
- * `bounds`: those that the volumes were made with. The scenes' own transfer functions are not used, but are replaced.
- * bounds, shape, camera and opacity of rank 0 hold; for others they may be NULL and 0. All ranks get the result, with
- * the same bits however parts are shared out; each destroys its own. */
+ * `bounds`: those that the volumes were made with. The scenes' own transfer functions are not used, but are replaced;
+ * they should show nothing else yet, as surfaces and clips would count here. bounds, shape, camera and opacity of rank
+ * 0 hold; for others they may be NULL and 0. All ranks get the result, with the same bits however parts are shared out;
+ * each destroys its own. */
 TETCAST_API TetcastStatus tetcast_mpi_scale_transfer_function(TetcastMpi *mpi, TetcastScene *const *scenes,
                                                               int64_t count, const double bounds[6],
                                                               const TetcastTransferFunction *shape,
