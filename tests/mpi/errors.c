@@ -199,6 +199,8 @@ static void memory_may_end_on_any_rank(void **state) {
       assert_true(status == TETCAST_OK || status == TETCAST_ERROR_MEMORY);
       if (status)
         check_message(&world, failed, "out of memory", TETCAST_ERROR_MEMORY);
+      else if (world.frame) /* that it says it has succeeded is true */
+        assert_memory_equal(tetcast_frame_pixels(world.frame), world.expected, WIDTH * HEIGHT * 4 * sizeof(double));
     }
     check_good(&world);
   }

@@ -202,6 +202,45 @@ static void bits_are_the_same(void **state) {
   cube_destroy(&cube);
 }
 
+/* Rays with far more fragments than is assumed at first: bands that don't fit are made anew, and what is stated holds.
+ */
+static void memory_is_kept_to(void **state) {
+  (void)state;
+  Ranks ranks;
+  ranks_begin(&ranks, world_size());
+  TetcastContext *context = ranks.fixture.context;
+  Cube cube = cube_create(9, 0.4);
+  Pieces pieces = pieces_of(context, &cube, SPLIT_SCATTER, 20, DEAL_IN_TURN, ranks.rank, ranks.size);
+  TetcastTransferFunction *transfer = gray_of(context, 0.1);
+  const TetcastCamera camera = parallel(0.6, 0.7, 3, 0.4);
+  int64_t memory = 0;
+  double *pictures[2];
+  TetcastMpiStats stats[2];
+  pieces_set_transfer(&pieces, transfer);
+  for (int small = 0; small < 2; ++small) {
+    assert_int_equal(tetcast_mpi_set_memory(ranks.mpi, INT64_C(1) << 40), TETCAST_OK);
+    if (small) { /* of which nothing is known yet */
+      tetcast_mpi_destroy(&ranks.mpi);
+      assert_int_equal(tetcast_mpi_create(context, MPI_Comm_c2f(MPI_COMM_WORLD), &ranks.mpi), TETCAST_OK);
+      assert_int_equal(tetcast_mpi_set_memory(ranks.mpi, ranks.rank == ranks.size - 1 ? memory : 2 * memory),
+                       TETCAST_OK);
+    }
+    pictures[small] = render(&ranks, &pieces, &camera, WIDTH, HEIGHT, &stats[small]);
+    memory = stats[0].memory / 2;
+  }
+  assert_true(stats[0].bands == 1);
+  assert_true(stats[1].bands > 2 && stats[1].memory <= memory && stats[1].memory > memory / 8);
+  assert_true(stats[0].fragments == stats[1].fragments && stats[0].segments == stats[1].segments);
+  if (ranks.rank == 0)
+    assert_memory_equal(pictures[0], pictures[1], PIXELS * 4 * sizeof(double));
+  free(pictures[0]);
+  free(pictures[1]);
+  tetcast_transfer_function_destroy(&transfer);
+  pieces_end(&pieces);
+  cube_destroy(&cube);
+  ranks_end(&ranks);
+}
+
 /* Frames of floats, rows that lie apart, some rows of a larger picture, and ranks of which one may not use the largest
  * instruction set. */
 static void frames_are_of_any_kind(void **state) {
@@ -374,9 +413,10 @@ static void ghosts_do_nothing(void **state) {
 
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(pieces_are_the_whole), cmocka_unit_test(nothing_is_lost_between_ranks),
-      cmocka_unit_test(bits_are_the_same),    cmocka_unit_test(frames_are_of_any_kind),
-      cmocka_unit_test(nothing_is_black),     cmocka_unit_test(ghosts_do_nothing),
+      cmocka_unit_test(pieces_are_the_whole),   cmocka_unit_test(nothing_is_lost_between_ranks),
+      cmocka_unit_test(bits_are_the_same),      cmocka_unit_test(memory_is_kept_to),
+      cmocka_unit_test(frames_are_of_any_kind), cmocka_unit_test(nothing_is_black),
+      cmocka_unit_test(ghosts_do_nothing),
   };
   RUN_WITH_MPI(tests);
 }
