@@ -121,7 +121,7 @@ static TetcastStatus share_order(Picture *picture, const TetcastCamera *camera, 
 
 static bool tell(void *data, double fraction) {
   Told *told = data;
-  told->reached = fmax(told->reached, told->begin + told->share * fraction);
+  told->reached = fmin(1, fmax(told->reached, told->begin + told->share * fraction));
   return !told->user.function || told->user.function(told->user.user, told->reached);
 }
 

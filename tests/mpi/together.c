@@ -317,7 +317,7 @@ static TetcastTransferFunction *make_together(Ranks *ranks, Pieces *pieces, int 
   } else {
     assert_int_equal(tetcast_mpi_scale_transfer_function(
                          ranks->mpi, pieces->scenes, pieces->count, ranks->rank ? NULL : bounds_of_cube,
-                         ranks->rank ? NULL : shape, ranks->rank ? NULL : &camera, ranks->rank ? 7 : 0.6, &made),
+                         ranks->rank ? NULL : shape, ranks->rank ? NULL : &camera, ranks->rank ? 7 : 0.97, &made),
                      TETCAST_OK);
   }
   tetcast_transfer_function_destroy(&shape);
@@ -332,7 +332,7 @@ static TetcastTransferFunction *make_alone(TetcastContext *context, const Cube *
   if (kind == 1)
     assert_int_equal(tetcast_scene_fit_transfer_function(whole.scenes[0], shape, 0.1, 0.8, &made), TETCAST_OK);
   else
-    assert_int_equal(tetcast_scene_scale_transfer_function(whole.scenes[0], shape, &camera, 0.6, &made), TETCAST_OK);
+    assert_int_equal(tetcast_scene_scale_transfer_function(whole.scenes[0], shape, &camera, 0.97, &made), TETCAST_OK);
   tetcast_transfer_function_destroy(&shape);
   pieces_end(&whole);
   return made;
