@@ -25,6 +25,8 @@ int main(int argc, char **argv) {
   const TetcastCamera camera = camera_of(2.1, 1.7, 3.3, 0.5, 0.5, 0.5);
   TetcastRenderDesc desc = tetcast_render_desc_default();
   desc.progress = (TetcastProgress){die, &dies};
+  puts("a picture is begun");
+  fflush(stdout);
   tetcast_mpi_render(ranks.mpi, scenes_of(&pieces), pieces.count, &camera, &desc, frame, NULL);
   puts("a picture was made");
   MPI_Finalize();
