@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* scale N SIZE PARTITION PIECES THREADS [FRAMES]: how long a picture of SIZE² pixels of a cube of 6 N³ tetrahedra takes
- * on the ranks that run this, and what goes between them: of the fastest of FRAMES. PARTITION: boxes, wavy or scatter, into so many PIECES, which
- * ranks have in turn; THREADS for each rank. One line of numbers, whose names are printed by `scale` without arguments.
+ * on the ranks that run this, and what goes between them: of the fastest of FRAMES. PARTITION: boxes, wavy or scatter,
+ * into so many PIECES, which ranks have in turn; THREADS for each rank. One line of numbers, whose names are printed by
+ * `scale` without arguments.
  */
 #define MOST_PIECES 4096
 #include "../mpi/pieces.h"
@@ -61,7 +62,7 @@ static int measure(const Run *run) {
   tetcast_transfer_function_destroy(&transfer);
   const TetcastCamera camera = camera_of(2.1, 1.7, 3.3, 0.5, 0.5, 0.5);
   TetcastFrame *frame = frame_at_root(&ranks, run->size, run->size, TETCAST_TYPE_FLOAT64);
-  double(*times)[8] = calloc((size_t)run->frames, sizeof *times);
+  double(*times)[6] = calloc((size_t)run->frames, sizeof *times);
   TetcastMpiStats stats;
   for (int i = -1; i < run->frames; ++i) { /* the first one allocates, and learns how much memory a pixel needs */
     MPI_Barrier(MPI_COMM_WORLD);
