@@ -57,8 +57,9 @@ TETCAST_API int tetcast_mpi_size(const TetcastMpi *mpi);
 
 /* Sets about how many bytes tetcast_mpi_render() may need on a rank for what it renders, sends, receives and collects,
  * at least 1; the smallest number of all ranks holds. Default: 268435456, 256 MiB. Pictures are made in bands of so
- * many rows as fit; a band that turns out not to fit is made anew in smaller ones, down to 16 rows. Pictures have the
- * same bits whatever it is. Smaller bands take longer, as vertices are projected for each. */
+ * many rows as fit, by what the last picture from there has needed, or a small one that is rendered first; a band that
+ * turns out not to fit is made anew in smaller ones, down to 16 rows. Pictures have the same bits whatever it is.
+ * Smaller bands take longer, as vertices are projected for each. */
 TETCAST_API TetcastStatus tetcast_mpi_set_memory(TetcastMpi *mpi, int64_t bytes);
 
 /* Collective. Makes what happened to one rank known to all: returns TETCAST_OK if all ranks pass it; else all return
@@ -107,9 +108,9 @@ TETCAST_API TetcastStatus tetcast_mpi_receive(TetcastMpi *mpi, int from, void *d
 /* Collective. Makes the transfer function that tetcast_scene_scale_transfer_function() makes for one scene, up to
  * rounding, for all parts of all ranks: scenes [count], each with a field. `scenes` may be NULL where count is 0.
  * `bounds`: those that the volumes were made with. The scenes' own transfer functions are not used, but are replaced;
- * they should show nothing else yet, as surfaces and clips would count here. bounds, shape, camera and opacity of rank
- * 0 hold; for others they may be NULL and 0. All ranks get the result, with the same bits however parts are shared out;
- * each destroys its own. */
+ * surfaces and clips would count, and are to be set later. bounds, shape, camera and opacity of rank 0 hold; for others
+ * they may be NULL and 0. All ranks get the result, with the same bits however parts are shared out; each destroys its
+ * own. */
 TETCAST_API TetcastStatus tetcast_mpi_scale_transfer_function(TetcastMpi *mpi, TetcastScene *const *scenes,
                                                               int64_t count, const double bounds[6],
                                                               const TetcastTransferFunction *shape,

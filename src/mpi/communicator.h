@@ -24,6 +24,12 @@ typedef struct TcMpiBuffer {
   int64_t bytes, capacity;
 } TcMpiBuffer;
 
+/* What a picture is taken from, and its rows of a larger one. */
+typedef struct TcMpiView {
+  TetcastCamera camera;
+  int64_t width, height, picture_height, first_row;
+} TcMpiView;
+
 struct TetcastMpi {
   TetcastContext *context;
   MPI_Comm comm;
@@ -38,7 +44,8 @@ struct TetcastMpi {
   TcMpiBuffer inbox;      /* what has come, from rank after rank */
   TcMpiBuffer pixels;     /* at rank 0, what it collects */
   int64_t *counts;        /* [2 · size] */
-  double bytes_per_pixel; /* that the last picture needed on the rank that needed most */
+  double bytes_per_pixel; /* that the last picture's densest band needed on the rank that needed most */
+  TcMpiView view;         /* of the last picture, at rank 0 */
   TetcastIsa isa;         /* the largest instruction set that all ranks have; AUTO: no difference is known */
 };
 

@@ -8,16 +8,18 @@
 
 #include "share.h"
 
-/* What is assumed to be needed for a pixel before anything is known: four fragments and three copies of each. Of the
- * memory, bands are to take so much, as the next rows may have more than the last ones. */
-static const double first_guess = 12 * sizeof(TetcastFragment), filling = 0.9;
+/* Of the memory, bands are to take so much, as their rows may have more than is expected. */
+static const double filling = 0.9;
+
+/* Before a picture from elsewhere there is a trial one, smaller by this in both directions. */
+enum { TRIAL = 16 };
 
 /* What rank 0 wants, and all get. */
 typedef struct Order {
-  TetcastCamera camera;
+  TcMpiView view;
   TetcastRenderDesc desc;
-  int64_t width, height, picture_height, first_row;
   TetcastType type;
+  int known; /* not 0: the last picture was taken from there as well, and tells how much memory this one needs */
 } Order;
 
 /* What is said of progress: that of this rank's own scenes, each of which has its share of the band. */
@@ -74,20 +76,19 @@ static TetcastStatus set_order(TetcastMpi *mpi, const TetcastCamera *camera, con
                                    "stop and start are not possible with parts on several ranks");
   if (status)
     return status;
-  *order = (Order){.camera = *camera,
-                   .desc = *desc,
-                   .width = tetcast_frame_width(frame),
-                   .height = tetcast_frame_height(frame),
-                   .picture_height = desc->picture_height,
-                   .first_row = desc->first_row,
-                   .type = tetcast_frame_type(frame)};
-  if (order->picture_height == 0)
-    order->picture_height = order->height;
-  const int64_t rows = order->picture_height - order->height;
-  if (order->first_row < 0 || order->first_row > rows)
+  const TcMpiView view = {.camera = *camera,
+                          .width = tetcast_frame_width(frame),
+                          .height = tetcast_frame_height(frame),
+                          .picture_height = desc->picture_height ? desc->picture_height : tetcast_frame_height(frame),
+                          .first_row = desc->first_row};
+  *order = (Order){.view = view, .desc = *desc, .type = tetcast_frame_type(frame)};
+  order->known = mpi->bytes_per_pixel > 0 && memcmp(&view, &mpi->view, sizeof view) == 0;
+  memcpy(&mpi->view, &view, sizeof view);
+  const int64_t rows = order->view.picture_height - order->view.height;
+  if (order->view.first_row < 0 || order->view.first_row > rows)
     return tetcast_context_error(mpi->context, TETCAST_ERROR_ARGUMENT,
-                                 "%" PRId64 " rows from row %" PRId64 " of a picture that has %" PRId64, order->height,
-                                 order->first_row, order->picture_height);
+                                 "%" PRId64 " rows from row %" PRId64 " of a picture that has %" PRId64,
+                                 order->view.height, order->view.first_row, order->view.picture_height);
   return TETCAST_OK;
 }
 
@@ -135,12 +136,12 @@ static TetcastStatus render_part(Picture *picture, const TcMpiBand *band, const 
   TetcastMpi *mpi = picture->mpi;
   TetcastRenderDesc desc = picture->order.desc;
   TetcastRenderStats stats;
-  desc.picture_height = picture->order.picture_height;
-  desc.first_row = picture->order.first_row + band->first;
+  desc.picture_height = picture->order.view.picture_height;
+  desc.first_row = picture->order.view.first_row + band->first;
   desc.progress = (TetcastProgress){tell, &picture->told};
   TetcastStatus status = mpi->fragments ? TETCAST_OK : tetcast_fragments_create(mpi->context, &mpi->fragments);
   if (!status)
-    status = tetcast_scene_render_fragments(scene, &picture->order.camera, &desc, band->width, band->rows,
+    status = tetcast_scene_render_fragments(scene, &picture->order.view.camera, &desc, band->width, band->rows,
                                             mpi->fragments, &stats);
   if (status)
     return status;
@@ -159,7 +160,7 @@ static TetcastStatus render_part(Picture *picture, const TcMpiBand *band, const 
 static TetcastStatus render_parts(Picture *picture, const TcMpiBand *band, Yield *yield) {
   TetcastMpi *mpi = picture->mpi;
   TetcastStatus status = TETCAST_OK;
-  const double height = (double)picture->order.height, begin = (double)band->first / height;
+  const double height = (double)picture->order.view.height, begin = (double)band->first / height;
   const double share = (double)band->rows / height;
   for (int i = 0; i < mpi->size; ++i)
     mpi->outboxes[i].bytes = 0;
@@ -296,35 +297,83 @@ static int64_t whole_steps(int64_t rows) {
 
 /* How many rows fit, by what a pixel has needed so far. */
 static int64_t rows_that_fit(const Picture *picture, double bytes_per_pixel) {
-  const double rows = filling * (double)picture->mpi->memory / (bytes_per_pixel * (double)picture->order.width);
-  return rows >= (double)picture->order.height ? picture->order.height : whole_steps((int64_t)rows);
+  const double rows = filling * (double)picture->mpi->memory / (bytes_per_pixel * (double)picture->order.view.width);
+  return rows >= (double)picture->order.view.height ? picture->order.view.height : whole_steps((int64_t)rows);
 }
 
-/* All ranks come to the same numbers here, as they come from what they have agreed upon. A band has at most twice as
- * many rows as the one before it: what it will need is known from that one alone. */
+/* How many fragments a pixel of the trial picture's densest row has on this rank: of all scenes, and of the scene that
+ * has most. */
+typedef struct Density {
+  double all, one;
+} Density;
+
+static TetcastStatus try_scene(Picture *picture, const TetcastScene *scene, int64_t *rows, Density *density) {
+  TetcastMpi *mpi = picture->mpi;
+  const Order *order = &picture->order;
+  const int64_t width = (order->view.width + TRIAL - 1) / TRIAL,
+                height = (order->view.picture_height + TRIAL - 1) / TRIAL;
+  TetcastRenderDesc desc = order->desc;
+  desc.picture_height = desc.first_row = 0;
+  desc.progress = (TetcastProgress){NULL, NULL}; /* rank 0's own */
+  TetcastStatus status = mpi->fragments ? TETCAST_OK : tetcast_fragments_create(mpi->context, &mpi->fragments);
+  if (!status)
+    status = tetcast_scene_render_fragments(scene, &order->view.camera, &desc, width, height, mpi->fragments, NULL);
+  if (status)
+    return status;
+  const TetcastFragmentList list = tetcast_fragments_list(mpi->fragments);
+  for (int64_t begin = 0, end; begin < list.count; begin = end) {
+    const int64_t row = list.data[begin].pixel / width;
+    for (end = begin + 1; end < list.count && list.data[end].pixel < (row + 1) * width;)
+      ++end;
+    rows[row] += end - begin;
+    density->one = fmax(density->one, (double)(end - begin) / (double)width);
+    density->all = fmax(density->all, (double)rows[row] / (double)width);
+  }
+  return TETCAST_OK;
+}
+
+/* Finds how many bytes a pixel of the densest rows will need on the rank that needs most, by the trial picture: twice
+ * the fragments of one scene, where they are rendered, all of the rank's own, and as many of others at most, as these
+ * are shared out evenly; a count, and the pixel itself twice. */
+static TetcastStatus try_out(Picture *picture, double *bytes_per_pixel) {
+  TetcastMpi *mpi = picture->mpi;
+  Density density = {0, 0};
+  const int64_t height = (picture->order.view.picture_height + TRIAL - 1) / TRIAL;
+  int64_t *rows = calloc((size_t)height, sizeof *rows);
+  TetcastStatus status = TETCAST_OK;
+  if (!rows)
+    status = tetcast_context_error(mpi->context, TETCAST_ERROR_MEMORY, "rank %d: out of memory: rows", mpi->rank);
+  for (int64_t i = 0; !status && i < picture->count; ++i)
+    status = try_scene(picture, picture->scenes[i], rows, &density);
+  free(rows);
+  int64_t bytes = (int64_t)ceil((2 * density.one + 2 * density.all) * sizeof(TetcastFragment));
+  status = tc_mpi_agree(mpi, status, &bytes, 1);
+  *bytes_per_pixel = (double)bytes + sizeof(int64_t) + 2 * 4 * sizeof(double);
+  return status;
+}
+
+/* All ranks come to the same numbers here, as they come from what they have agreed upon: what the densest rows have
+ * needed, of this picture and, at its beginning, of the last or the trial one. */
 static TetcastStatus make_bands(Picture *picture) {
   TetcastMpi *mpi = picture->mpi;
   const Order *order = &picture->order;
-  double most = 0, expected = mpi->bytes_per_pixel > 0 ? mpi->bytes_per_pixel : first_guess;
-  TetcastStatus status = TETCAST_OK;
-  int64_t rows = rows_that_fit(picture, expected);
-  for (int64_t first = 0; !status && first < order->height;) {
+  double most = 0, expected = mpi->bytes_per_pixel;
+  TetcastStatus status = order->known ? TETCAST_OK : try_out(picture, &expected);
+  for (int64_t first = 0; !status && first < order->view.height;) {
     Verdict verdict;
     int64_t memory;
-    const int64_t left = order->height - first;
-    const TcMpiBand band = tc_mpi_band(mpi, order->width, first, rows < left ? rows : left);
+    const int64_t left = order->view.height - first, rows = rows_that_fit(picture, expected);
+    const TcMpiBand band = tc_mpi_band(mpi, order->view.width, first, rows < left ? rows : left);
     status = make_band(picture, &band, &verdict, &memory);
     if (status || verdict == VERDICT_OTHER_ISA)
       continue;
     const double needed = (double)memory / ((double)band.rows * (double)band.width);
-    const int64_t fitting = rows_that_fit(picture, needed);
+    expected = fmax(expected, needed);
     if (verdict == VERDICT_TOO_LARGE) {
       tc_mpi_forget(mpi);
-      rows = fitting < band.rows / 2 ? fitting : whole_steps(band.rows / 2);
       continue;
     }
     first += band.rows;
-    rows = fitting < 2 * band.rows ? fitting : 2 * band.rows;
     most = fmax(most, needed);
   }
   if (!status)

@@ -112,11 +112,14 @@ static TetcastStatus sum_some(TetcastMpi *mpi, const double *values, int64_t par
 
 static TetcastStatus check_sum(TetcastMpi *mpi, const double *values, int64_t parts, int64_t count,
                                const double *sums) {
-  if (parts < 0 || count < 0 || parts > most_parts)
+  if (parts < 0 || count < 0)
     return tetcast_context_error(mpi->context, TETCAST_ERROR_ARGUMENT, "%" PRId64 " parts of %" PRId64 " values", parts,
                                  count);
   if ((parts > 0 && count > 0 && !values) || (count > 0 && !sums))
     return tetcast_context_error(mpi->context, TETCAST_ERROR_ARGUMENT, "%s is NULL", sums ? "values" : "sums");
+  if (parts > most_parts)
+    return tetcast_context_error(mpi->context, TETCAST_ERROR_LIMIT,
+                                 "sums of %" PRId64 " parts, at most %" PRId64 " are possible", parts, most_parts);
   return TETCAST_OK;
 }
 

@@ -23,6 +23,17 @@ static int by_time(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
+/* What the volumes of this rank's pieces need. */
+static double volume_memory(const Pieces *pieces) {
+  double bytes = 0;
+  for (int i = 0; i < pieces->count; ++i) {
+    TetcastVolumeInfo info;
+    tetcast_volume_info(pieces->part[i].volume, &info);
+    bytes += (double)info.bytes;
+  }
+  return bytes;
+}
+
 /* The share of the pixels that see the mesh. */
 static double seen_of(const TetcastFrame *frame, int64_t pixels) {
   const double *rgba = tetcast_frame_pixels(frame);
@@ -39,13 +50,13 @@ typedef struct Run {
 } Run;
 
 static void report(const Run *run, const Ranks *ranks, const TetcastFrame *frame, const double best[6],
-                   const TetcastMpiStats *stats, double memory) {
+                   const TetcastMpiStats *stats, const double memory[2]) {
   const double seen = seen_of(frame, run->size * run->size);
-  printf("%s %d %d %d %lld %lld %.4f %lld %lld %lld %lld %.0f %.4f %.4f %.4f %.4f %.4f %.4f %lld %.1e\n",
+  printf("%s %d %d %d %lld %lld %.4f %lld %lld %lld %lld %.0f %.0f %.4f %.4f %.4f %.4f %.4f %.4f %lld %.1e\n",
          names[run->split], ranks->size, run->threads, run->pieces, (long long)(6 * (int64_t)run->n * run->n * run->n),
          (long long)run->size, (double)stats->fragments / seen, (long long)stats->bytes, (long long)stats->most_bytes,
-         (long long)stats->memory, (long long)stats->bands, memory, best[0], best[1], best[2], best[3], best[4],
-         best[5], (long long)stats->lost, stats->overlap);
+         (long long)stats->memory, (long long)stats->bands, memory[0], memory[1], best[0], best[1], best[2], best[3],
+         best[4], best[5], (long long)stats->lost, stats->overlap);
 }
 
 static int measure(const Run *run) {
@@ -76,8 +87,9 @@ static int measure(const Run *run) {
              sizeof *times);
   }
   qsort(times, (size_t)run->frames, sizeof *times, by_time);
-  double memory = peak_memory(), most;
-  MPI_Reduce(&memory, &most, 1, MPI_DOUBLE, MPI_MAX, 0, MPI_COMM_WORLD);
+  const double memory[2] = {peak_memory(), volume_memory(&pieces)};
+  double most[2];
+  MPI_Reduce(memory, most, 2, MPI_DOUBLE, MPI_MAX, 0, MPI_COMM_WORLD);
   if (ranks.rank == 0)
     report(run, &ranks, frame, times[0], &stats, most);
   free(times);
@@ -90,6 +102,7 @@ static int measure(const Run *run) {
 int main(int argc, char **argv) {
   if (argc < 6) {
     puts("partition ranks threads pieces cells size fragments_per_ray bytes most_bytes memory bands peak_bytes "
+         "volume_bytes "
          "frame_s render_s wait_s exchange_s composite_s gather_s lost overlap");
     return argc > 1;
   }

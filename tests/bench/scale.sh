@@ -42,14 +42,16 @@ picture() {
   printf '%-7s %s\n' "$1" "$(tail -n 1 "$out/line")"
 }
 
-most=4 strong=96 size=1024 weak='64 81 92 102' pieces=64 pieces_size=256 counts='1 8 27 64 125 216 343 512'
+most=4 strong=96 scattered=24 size=1024 weak='64 81 92 102' pieces=64 pieces_size=256 counts='1 8 27 64 125 216 343 512'
 if [ -n "$small" ]; then
-  most=2 strong=6 size=64 weak='5 6' pieces=10 pieces_size=32 counts='1 8 27'
+  most=2 strong=6 scattered=5 size=64 weak='5 6' pieces=10 pieces_size=32 counts='1 8 27'
 fi
 echo "        $("$program")"
 for partition in boxes wavy scatter; do
   for ranks in $(seq $most); do
-    picture strong "$ranks" $strong $size $partition "$ranks"
+    n=$strong
+    [ $partition != scatter ] || n=$scattered # as each ray has a fragment for every second cell or so
+    picture strong "$ranks" $n $size $partition "$ranks"
   done
 done
 for partition in boxes wavy; do
