@@ -93,7 +93,8 @@ TC_INLINE TcMask add_segment(const int which, const unsigned on, const TcGround 
   if (on & TC_BOUND)
     passage.spread = spread_of(on, ground, p, crossed, passage.length);
   if (on & TC_BOUND && on & TC_ASSOCIATIONS && (!(on & TC_WEIGHTS) || job->coefficients->cells))
-    p->shift += tc_select(moved, tc_packet_shift(ground, p), tc_set(0));
+    p->shift += tc_select(moved, tc_packet_shift(ground, p), tc_set(0)) +
+                tc_select(passage.crossed, crossed->grazed, tc_set(0));
   tc_gather_segment(which, on, job, &packet->gather, moved, &passage);
   return ends;
 }
@@ -172,7 +173,7 @@ TC_INLINE void advance_cells(const int which, const unsigned on, const TcGround 
       continue;
     tc_cell_at(on, ground, p, &faces, 0);
     tc_gather_enter(which, on, job, &packet->gather, 1, p);
-    TcCrossed crossed = {.mask = 1, .z = p->at.z, .s0 = p->at.s, .tilt = p->at.tilt};
+    TcCrossed crossed = {.mask = 1, .grazed = tc_set(0), .z = p->at.z, .s0 = p->at.s, .tilt = p->at.tilt};
     for (int k = 0; on & TC_SURFACES && k < 3; ++k) {
       crossed.barycentric[k] = p->at.barycentric[k];
       crossed.id[k] = p->v[k].id;
@@ -282,7 +283,7 @@ static void begin_packet(const int which, const TcSurfaces *surfaces, const TcGa
   p->lost = 0;
   p->doubtful = waiting->doubtful;
   p->seen = p->rays.begin;
-  p->shift = p->rays.doubt;
+  p->shift = p->rays.doubt + waiting->grazed;
   p->steps = 0;
   unsigned starting = 0;
   TC_EACH_LANE {
@@ -366,6 +367,7 @@ static State *prepare(const TcJob *job, TcWorker *worker) {
                              .exponent = job->shell->volume->exponent,
                              .rounding = 8 * 0x1p-53};
   state->queue.ground = &state->ground;
+  state->queue.bounds = rows[job->kernel].features & TC_BOUND;
   state->queue.next = state->queue.count = 0;
   state->placed.lanes = 0;
   state->again_count = 0;

@@ -80,12 +80,32 @@ static TcVec tc_cell_range(const TcGround *ground, uint32_t cell) {
   return tc_set((TcReal)(high - low));
 }
 
+/* Adds what those faces of a cell may be for a ray that it crosses, or doesn't cross. */
+static void tc_cell_passed(const TcGround *ground, uint32_t cell, bool crosses, TcWaiting *waiting) {
+  const uint32_t *vertex = ground->shell->volume->adjacency.vertices[cell];
+  for (int k = 0; k < 4; ++k) {
+    TcLanePoints v[3];
+    for (int j = 0; j < 3; ++j)
+      tc_points_of_one(ground, &waiting->rays, vertex[j + (j >= k)], &v[j]);
+    TcVec e[3], length;
+    tc_edges_of(tc_all(), v, e);
+    const unsigned negative = tc_bits(tc_negative(e[0])) + tc_bits(tc_negative(e[1])) + tc_bits(tc_negative(e[2]));
+    if ((negative == 0 || negative == 3) != crosses)
+      continue;
+    tc_graze_face(ground, &waiting->rays, v, &length);
+    waiting->grazed += length;
+  }
+}
+
 /* Notes cell i as a hit of those rays of `lanes` that cross it. */
 static void tc_cell_candidate(void *user, uint32_t i, unsigned lanes) {
-  const TcGround *ground = ((const TcQueue *)user)->ground;
+  TcQueue *queue = user;
+  const TcGround *ground = queue->ground;
   for (; lanes; lanes &= lanes - 1) {
-    const TcWaiting *waiting = &((const TcQueue *)user)->waiting[__builtin_ctz(lanes)];
+    TcWaiting *waiting = &queue->waiting[__builtin_ctz(lanes)];
     TcCellFaces faces;
+    if (TC_UNLIKELY(queue->bounds))
+      tc_cell_passed(ground, i, false, waiting);
     if (!tc_cell_faces(TC_CELLS, ground, &waiting->rays, i, &faces))
       continue;
     TcHit *hit = tc_hits_append(waiting->hits);

@@ -183,10 +183,25 @@ typedef struct TcCrossed {
   TcTilt tilt;
   /* With TC_CORNERS: the difference between the largest and the smallest scalar of the cell. */
   TcVec range;
+  /* With TC_BOUND and TC_ASSOCIATIONS: over which lengths rounding may put them into neighbours of the cell, past the
+   * faces that they don't cross. */
+  TcVec grazed;
   /* With TC_SURFACES: the vertices of the face where they entered it, and the weights of these there. */
   TcWord id[3];
   TcVec barycentric[3];
 } TcCrossed;
+
+/* What the faces at the new vertex q that rays don't leave through may be for them. */
+TC_NOINLINE void tc_packet_graze(const TcGround *ground, const TcPacket *p, const TcLanePoints *q, const TcMask out[3],
+                                 TcVec *grazed) {
+  *grazed = tc_set(0);
+  for (int k = 0; k < 3; ++k) {
+    const TcLanePoints face[3] = {*q, p->v[(k + 1) % 3], p->v[(k + 2) % 3]};
+    TcVec length;
+    tc_graze_face(ground, &p->rays, face, &length);
+    *grazed += tc_select(out[k], tc_set(0), length);
+  }
+}
 
 /* A step's first part: loads the vertices p->vertex, as the rays see them. */
 TC_INLINE void tc_packet_look(const TcGround *ground, TcPacket *p, TcLanePoints *q) {
@@ -226,6 +241,10 @@ TC_INLINE TcMask tc_packet_cross(const unsigned on, const TcGround *ground, TcPa
     negative[k] = tc_and(p->active, tc_negative(e[k]));
   for (int k = 0; k < 3; ++k)
     out[k] = tc_and_not(negative[(k + 1) % 3], negative[(k + 2) % 3]);
+  if (on & TC_BOUND && on & TC_ASSOCIATIONS) {
+    const TcLanePoints vertex = *q;
+    tc_packet_graze(ground, p, &vertex, out, &crossed->grazed);
+  }
   const TcWord left = tc_select_word(out[0], v[0].id, tc_select_word(out[1], v[1].id, v[2].id));
   /* A cell's neighbours are in the order of the vertices that they don't share. */
   const TcWord rank = tc_rank(left, q->id, v[0].id, v[1].id, v[2].id);

@@ -305,6 +305,60 @@ TC_INLINE void tc_face_tilt(const unsigned on, bool perspective, const TcRays *r
   c->tilt.s = factor * (tc_most3(v[0].s, v[1].s, v[2].s) - tc_least3(v[0].s, v[1].s, v[2].s));
 }
 
+/* With TC_BOUND: a bound on the length of the ray over which a face that it passes by may lie on its other side, 0 if
+ * the face is far enough from it.
+ *
+ * Let rounding undo itself: vertices go from where they were rounded to back to where they are, each by at most ε
+ * beside the ray and δ along it. Where a point of the ray is outside of a cell (or the mesh) before and inside after,
+ * or the other way round, a face has passed through it. So such points lie, but for δ at either end, at the depths that
+ * faces have within ε of the ray. Of a face that the ray crosses this is what tc_packet_shift() says. One that it
+ * passes by within ε is seen edge-on if these depths matter at all: they are at most those of its vertices, and at most
+ * 2 ε times the slope of its depth, which tc_face_tilt() derives.
+ *
+ * The face is farther than ε if its vertices lie beyond ε on one side, in x, in y, or across one of its edges. With e
+ * the cross product of an edge's ends, and w the sum of all three, the place of the ray across that edge is e where the
+ * edge is at 0 and the third vertex at w. The sum's rounding is below 2⁻⁵⁰ times the largest of them. */
+TC_NOINLINE void tc_graze_face(const TcGround *ground, const TcRays *rays, const TcLanePoints v[3], TcVec *length) {
+  const TcVec zero = tc_set(0);
+  TcVec e[3], z[3], most = zero, reach = zero;
+  for (int k = 0; k < 3; ++k) {
+    const int next = k == 2 ? 0 : k + 1;
+    e[k] = tc_determinant(v[k].x, v[k].y, v[next].x, v[next].y);
+    most = tc_max(most, tc_abs(e[k]));
+    reach = tc_max(reach, tc_max(tc_abs(v[k].x), tc_abs(v[k].y)));
+  }
+  const TcVec rounding = most * (TcReal)0x1p-50, w = e[0] + e[1] + e[2];
+  const TcVec beside =
+      tc_madd(tc_set((TcReal)(1.5 * ground->resolution.relative)), reach, tc_set((TcReal)ground->resolution.beside));
+  const TcVec low = tc_min(w, zero) - rounding, high = tc_max(w, zero) + rounding;
+  TcMask near =
+      tc_and(tc_le(tc_least3(v[0].x, v[1].x, v[2].x), beside), tc_le(-beside, tc_most3(v[0].x, v[1].x, v[2].x)));
+  near = tc_and(
+      near, tc_and(tc_le(tc_least3(v[0].y, v[1].y, v[2].y), beside), tc_le(-beside, tc_most3(v[0].y, v[1].y, v[2].y))));
+  for (int k = 0; k < 3; ++k) {
+    const int next = k == 2 ? 0 : k + 1;
+    const TcVec margin = beside * (tc_abs(v[k].x - v[next].x) + tc_abs(v[k].y - v[next].y));
+    near = tc_and(near, tc_and(tc_le(low - margin, e[k]), tc_le(e[k], high + margin)));
+  }
+  if (TC_LIKELY(!tc_any(near))) {
+    *length = zero;
+    return;
+  }
+  const bool perspective = ground->screen && ground->screen->perspective;
+  for (int k = 0; k < 3; ++k)
+    z[k] = rays->scale * (perspective ? v[k].d / (1 + v[k].d) : v[k].d);
+  const TcVec first = tc_least3(z[0], z[1], z[2]), last = tc_most3(z[0], z[1], z[2]), range = last - first;
+  TcVec slope = (TcReal)8.5 * reach * range / tc_max(tc_abs(w) - rounding, zero);
+  if (perspective)
+    slope *= (1 + tc_most3(v[0].d, v[1].d, v[2].d)) / (1 + tc_least3(v[0].d, v[1].d, v[2].d));
+  const TcVec tilted = 2 * beside * slope;
+  /* What lies outside of the ray's interval doesn't count. An area of 0 has a slope that is infinite or NaN. */
+  const TcVec counts = tc_min(last, rays->end) - tc_max(first, rays->begin);
+  const TcVec depths = tc_select(tc_lt(tilted, range), tc_min(tilted, counts), counts) +
+                       (2 * (TcReal)ground->resolution.depth + rays->doubt);
+  *length = tc_select(near, tc_max(depths, zero), zero);
+}
+
 /* Computes where rays cross a face with vertices v; the weight of each is the cross product of the two others. */
 TC_INLINE void tc_cross_face(const unsigned on, const TcGround *ground, const TcRays *rays, const TcLanePoints v[3],
                              const TcVec weight[3], TcCrossing *c) {

@@ -21,12 +21,14 @@ typedef struct TcWaiting {
   TcWide start;
   unsigned lanes;    /* the lanes that have a ray */
   unsigned doubtful; /* single precision: lanes whose rays pass an edge of the shell as near as rounding may move it */
-  TcHits *hits;      /* [TC_LANES] lists */
+  TcVec grazed; /* with TC_BOUND: over which lengths rounding may hide from rays that they pass the shell's inside */
+  TcHits *hits; /* [TC_LANES] lists */
   int64_t destination[TC_LANES];
 } TcWaiting;
 
 typedef struct TcQueue {
   const TcGround *ground;
+  bool bounds; /* whether the kernel has TC_BOUND */
   TcWaiting waiting[TC_QUEUE];
   int next, count; /* the packet that is walked next; how many there are */
   _Alignas(64) double from_center[3][TC_QUEUE_RAYS], direction[3][TC_QUEUE_RAYS];
@@ -53,9 +55,9 @@ static void tc_enqueue(TcPlaced *placed, TcQueue *queue) {
 
 /* ── hits ── */
 
-/* Notes face i of the shell as a hit of those rays of `lanes` that cross it. Of these lanes it is known that their rays
- * cross the face or one of its edges; ties are decided here. */
-TC_NOINLINE void tc_face_reached(const TcQueue *queue, const TcWaiting *waiting, uint32_t i, unsigned lanes) {
+/* Notes face i of the shell as a hit of those rays of `lanes` that cross it, and returns their lanes. Of the given ones
+ * it is known that their rays cross the face or one of its edges; ties are decided here. */
+TC_NOINLINE unsigned tc_face_reached(const TcQueue *queue, const TcWaiting *waiting, uint32_t i, unsigned lanes) {
   const uint32_t *vertex = queue->ground->shell->faces[i].vertex;
   TcLanePoints p[3];
   for (int k = 0; k < 3; ++k)
@@ -69,17 +71,31 @@ TC_NOINLINE void tc_face_reached(const TcQueue *queue, const TcWaiting *waiting,
   tc_cross_face(TC_CELLS, queue->ground, &waiting->rays, p, e, &crossing);
   TcReal depth[TC_LANES];
   tc_store(depth, crossing.z);
-  for (; lanes; lanes &= lanes - 1) {
-    const int l = __builtin_ctz(lanes);
+  for (unsigned left = lanes; left; left &= left - 1) {
+    const int l = __builtin_ctz(left);
     TcHit *hit = tc_hits_append(&waiting->hits[l]);
     if (!hit)
-      return;
+      return 0;
     /* Member by member: a struct that is made in memory first and copied then would have to be waited for. */
     hit->begin = hit->end = (double)depth[l];
     hit->id = i;
     hit->done = false;
   }
+  return lanes;
 }
+
+#if !TC_SINGLE
+/* Adds what face i of the shell may be for the rays of `lanes`, which pass by it or end before it. */
+TC_NOINLINE void tc_face_passed(const TcQueue *queue, TcWaiting *waiting, uint32_t i, unsigned lanes) {
+  const uint32_t *vertex = queue->ground->shell->faces[i].vertex;
+  TcLanePoints p[3];
+  for (int k = 0; k < 3; ++k)
+    tc_points_of_one(queue->ground, &waiting->rays, vertex[k], &p[k]);
+  TcVec length;
+  tc_graze_face(queue->ground, &waiting->rays, p, &length);
+  waiting->grazed += tc_select(tc_mask_of(lanes), length, tc_set(0));
+}
+#endif
 
 /* The largest cross product of an edge's ends that may have the wrong sign by rounding. In single precision, rounding
  * may decide whether a ray meets the shell or misses it, even if it would cross a large part of the mesh; such rays are
@@ -129,15 +145,38 @@ static void tc_face_candidate(void *user, uint32_t i, unsigned lanes) {
 #if TC_SINGLE
     waiting->doubtful |= reached & ~tc_bits(tc_or(sure, tc_and(surely_left, surely_right)));
 #endif
-    reached &= ~tc_bits(tc_and(left, right));
-    if (reached)
-      tc_face_reached(queue, waiting, i, reached);
+    const unsigned crossing = reached & ~tc_bits(tc_and(left, right));
+    const unsigned crossed = crossing ? tc_face_reached(queue, waiting, i, crossing) : 0;
+#if TC_SINGLE
+    (void)crossed;
+#else
+    if (TC_UNLIKELY(queue->bounds) && reached & ~crossed)
+      tc_face_passed(queue, waiting, i, reached & ~crossed);
+#endif
   }
 }
 
 #if TC_LANES == 1
 #include "walk/cells.h"
 #endif
+
+/* Forgets the last hit of lane l, which lies behind the ray's end, as far as rounding tells. */
+static void tc_queue_forget(const TcQueue *queue, TcWaiting *waiting, int l) {
+  const TcHit *hit = &waiting->hits[l].data[--waiting->hits[l].count];
+#if TC_SINGLE
+  (void)queue, (void)hit;
+#else
+  if (!queue->bounds)
+    return;
+#if TC_LANES == 1
+  if (!queue->ground->shell->faces) {
+    tc_cell_passed(queue->ground, hit->id, true, waiting);
+    return;
+  }
+#endif
+  tc_face_passed(queue, waiting, hit->id, 1U << l);
+#endif
+}
 
 /* Finds what the rays that wait meet in Embree. False if memory has run out. */
 static bool tc_queue_trace(TcQueue *queue) {
@@ -146,6 +185,7 @@ static bool tc_queue_trace(TcQueue *queue) {
   for (int j = 0; j < queue->count; ++j) {
     lanes |= queue->waiting[j].lanes << j * TC_LANES;
     queue->waiting[j].doubtful = 0;
+    queue->waiting[j].grazed = tc_set(0);
     for (int l = 0; l < TC_LANES; ++l)
       queue->waiting[j].hits[l].count = 0;
   }
@@ -166,7 +206,7 @@ static bool tc_queue_trace(TcQueue *queue) {
       ok = ok && !hits->out_of_memory;
       while (TC_UNLIKELY(hits->count > 0 &&
                          hits->data[hits->count - 1].begin >= (double)TC_AT(queue->waiting[j].rays.end, l)))
-        --hits->count; /* nothing behind the ray's end counts */
+        tc_queue_forget(queue, &queue->waiting[j], l);
     }
   }
   return ok;
