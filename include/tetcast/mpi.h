@@ -143,6 +143,8 @@ typedef struct TetcastMpiStats {
   int64_t memory;
   /* The number of bands that the picture was made in. */
   int64_t bands;
+  /* The number of bands that were made in vain before, as they didn't fit into memory. */
+  int64_t redone;
   /* The time in seconds, of the rank that took longest, for rendering fragments, and sorting them by owner. */
   double render_seconds;
   /* Likewise for waiting until all ranks have rendered theirs. */

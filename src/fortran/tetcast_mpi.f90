@@ -20,6 +20,7 @@ module tetcast_mpi
     integer(c_int64_t) :: most_bytes
     integer(c_int64_t) :: memory
     integer(c_int64_t) :: bands
+    integer(c_int64_t) :: redone
     real(c_double) :: render_seconds
     real(c_double) :: wait_seconds
     real(c_double) :: exchange_seconds

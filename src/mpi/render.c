@@ -370,6 +370,7 @@ static TetcastStatus make_bands(Picture *picture) {
     const double needed = (double)memory / ((double)band.rows * (double)band.width);
     expected = fmax(expected, needed);
     if (verdict == VERDICT_TOO_LARGE) {
+      ++picture->stats.redone;
       tc_mpi_forget(mpi);
       continue;
     }
@@ -409,6 +410,7 @@ static TetcastStatus share_stats(Picture *picture, TetcastMpiStats *result) {
                                 .most_bytes = (int64_t)most[6],
                                 .memory = stats->memory,
                                 .bands = stats->bands,
+                                .redone = stats->redone,
                                 .render_seconds = most[1],
                                 .wait_seconds = most[2],
                                 .exchange_seconds = most[3],

@@ -241,6 +241,7 @@ static void memory_is_kept_to(void **state) {
     assert_true(i == 2 || (stats[0].fragments == stats[i].fragments && stats[0].segments == stats[i].segments));
   }
   assert_true(stats[0].bands == 1 && stats[1].bands > 2 && stats[2].fragments == 0 && stats[3].bands > 2);
+  assert_true(stats[0].redone == 0 && stats[1].redone == 0 && stats[2].redone == 0 && stats[3].redone > 0);
   for (int i = 0; i < 4; ++i)
     free(pictures[i]);
   tetcast_transfer_function_destroy(&transfer);
