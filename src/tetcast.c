@@ -469,6 +469,37 @@ TetcastStatus tetcast_transfer_function_create_preset(TetcastContext *context, c
   return tc_transfer_create_preset(context, name, low, high, extinction, transfer_function);
 }
 
+TetcastStatus tetcast_transfer_function_stretch(TetcastContext *context, const TetcastTransferFunction *shape,
+                                                double low, double high, double extinction,
+                                                TetcastTransferFunction **transfer_function) {
+  TC_ENTRY;
+  CHECK_OUT(context, transfer_function);
+  CHECK_GIVEN(context, context);
+  CHECK_GIVEN(context, shape);
+  if (!isfinite(low) || !isfinite(high) || low > high)
+    return ARGUMENT(context, "range %g to %g of a transfer function", low, high);
+  if (!isfinite(extinction) || extinction < 0)
+    return ARGUMENT(context, "extinction %g of a transfer function", extinction);
+  return tc_transfer_stretch(context, shape, low, high, extinction, transfer_function);
+}
+
+TetcastStatus tetcast_opacity_factor(TetcastContext *context, const double *depths, int64_t count, double opacity,
+                                     int clear, double *factor) {
+  TC_ENTRY;
+  CHECK_GIVEN(context, context);
+  CHECK_GIVEN(context, depths);
+  CHECK_GIVEN(context, factor);
+  if (count < 1)
+    return ARGUMENT(context, "%" PRId64 " optical depths", count);
+  if (!(opacity > 0 && opacity < 1))
+    return ARGUMENT(context, "opacity %g is not between 0 and 1", opacity);
+  for (int64_t i = 0; i < count; ++i) {
+    if (!(depths[i] > 0 && isfinite(depths[i])))
+      return ARGUMENT(context, "optical depth %" PRId64 " is %g", i, depths[i]);
+  }
+  return tc_opacity_factor(context, depths, count, opacity, clear != 0, factor);
+}
+
 void tetcast_transfer_function_destroy(TetcastTransferFunction **transfer_function) {
   TC_ENTRY;
   if (!transfer_function)

@@ -17,7 +17,7 @@ typedef enum TetcastStatus {
   TETCAST_ERROR_MEMORY,      /* an allocation failed */
   TETCAST_ERROR_DATA,        /* data are unusable: index out of range, non-finite coordinate, truncated file … */
   TETCAST_ERROR_LIMIT,       /* more vertices or cells than can be addressed (mesh.h) */
-  TETCAST_ERROR_IO,          /* a file can't be opened, read or written */
+  TETCAST_ERROR_IO,          /* a file can't be opened, read or written, or a message between processes is lost */
   TETCAST_ERROR_UNSUPPORTED, /* a known thing that this build or version can't do */
   TETCAST_ERROR_CANCELLED,   /* the progress callback asked to stop */
   TETCAST_ERROR_EMBREE,      /* Embree reported an error other than lack of memory */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* All of libtetcast. The adapters have headers of their own: dataset.h, surface.h and tetgen.h, image.h. */
+/* All of libtetcast. The adapters have headers of their own: dataset.h, surface.h and tetgen.h, image.h, mpi.h. */
 #ifndef TETCAST_TETCAST_H
 #define TETCAST_TETCAST_H
 

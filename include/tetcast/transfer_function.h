@@ -91,6 +91,22 @@ TETCAST_API TetcastStatus tetcast_transfer_function_create_preset(TetcastContext
                                                                   double high, double extinction,
                                                                   TetcastTransferFunction **transfer_function);
 
+/* Makes a transfer function from a shape over [0, 1] of any colours and extinctions: 0 comes to lie at `low`, 1 at
+ * `high`, and the largest extinction becomes `extinction` ≥ 0 [1/length], unless all are 0. Where low is high: the
+ * colour of 0.5 and this extinction. low > high, or a number that isn't finite, is TETCAST_ERROR_ARGUMENT. The caller
+ * destroys the result. */
+TETCAST_API TetcastStatus tetcast_transfer_function_stretch(TetcastContext *context,
+                                                            const TetcastTransferFunction *shape, double low,
+                                                            double high, double extinction,
+                                                            TetcastTransferFunction **transfer_function);
+
+/* Finds the factor by which extinctions have to be multiplied so that rays which have these optical depths [count ≥ 1],
+ * finite and > 0, become opaque to `opacity` on average, in (0, 1). If `clear` is 0, as far as a mean depth between
+ * 0.25 and 6 allows it, as tetcast_scene_fit_transfer_function() has it; else as far as at most one in twenty is opaque
+ * to more than 0.99, as tetcast_scene_scale_transfer_function() has it. For those whose rays are cast elsewhere. */
+TETCAST_API TetcastStatus tetcast_opacity_factor(TetcastContext *context, const double *depths, int64_t count,
+                                                 double opacity, int clear, double *factor);
+
 /* Frees it and sets the pointer to NULL. NULL and pointer to NULL do nothing. Scenes have copies of what they need. */
 TETCAST_API void tetcast_transfer_function_destroy(TetcastTransferFunction **transfer_function);
 

@@ -827,6 +827,26 @@ module tetcast
       integer(c_int) :: status
     end function
 
+    function tetcast_transfer_function_stretch(context, shape, low, high, extinction, transfer_function) &
+      result(status) bind(c)
+      import
+      type(c_ptr), value :: context, shape
+      real(c_double), value :: low, high, extinction
+      type(c_ptr), intent(out) :: transfer_function
+      integer(c_int) :: status
+    end function
+
+    function tetcast_opacity_factor(context, depths, count, opacity, clear, factor) result(status) bind(c)
+      import
+      type(c_ptr), value :: context
+      real(c_double), intent(in) :: depths(*)
+      integer(c_int64_t), value :: count
+      real(c_double), value :: opacity
+      integer(c_int), value :: clear
+      real(c_double), intent(out) :: factor
+      integer(c_int) :: status
+    end function
+
     subroutine tetcast_transfer_function_destroy(transfer_function) bind(c)
       import
       type(c_ptr), intent(inout) :: transfer_function

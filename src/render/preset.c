@@ -74,11 +74,11 @@ static TetcastStatus measure(const TetcastScene *scene, const TcPieces *pieces, 
   return ok ? TETCAST_OK : tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: rays");
 }
 
-static double mean_opacity(const double *depths, int count, double factor) {
+static double mean_opacity(const double *depths, int64_t count, double factor) {
   double sum = 0;
-  for (int i = 0; i < count; ++i)
+  for (int64_t i = 0; i < count; ++i)
     sum -= expm1(-depths[i] * factor);
-  return sum / count;
+  return sum / (double)count;
 }
 
 static int ascending(const void *a, const void *b) {
@@ -90,10 +90,10 @@ static int ascending(const void *a, const void *b) {
  * that neither a small hot core nor a faint halo decides alone. The mean depth is kept between 0.25 and 6; or, if the
  * picture is to be `clear`, at most one ray in twenty is opaque to more than 99 %, as far as the mean depth stays above
  * 0.25. */
-static double find_factor(double *depths, int count, double opacity, bool clear) {
+static double find_factor(double *depths, int64_t count, double opacity, bool clear) {
   double mean = 0;
-  for (int i = 0; i < count; ++i)
-    mean += depths[i] / count;
+  for (int64_t i = 0; i < count; ++i)
+    mean += depths[i] / (double)count;
   double lower = log((clear ? 1e-3 : 0.25) / mean), upper = log((clear ? 1e3 : 6) / mean);
   if (clear) {
     qsort(depths, (size_t)count, sizeof *depths, ascending);
@@ -108,6 +108,17 @@ static double find_factor(double *depths, int count, double opacity, bool clear)
       upper = middle;
   }
   return exp(lower);
+}
+
+TetcastStatus tc_opacity_factor(TetcastContext *context, const double *depths, int64_t count, double opacity,
+                                bool clear, double *factor) {
+  double *copy;
+  if (!tc_allocate_array(context, (void **)&copy, count, sizeof *copy, "optical depths"))
+    return TETCAST_ERROR_MEMORY;
+  memcpy(copy, depths, (size_t)count * sizeof *copy);
+  *factor = find_factor(copy, count, opacity, clear);
+  tc_release(context, copy);
+  return TETCAST_OK;
 }
 
 /* By which factor extinctions of at most 1 make rays that meet something opaque as find_factor() has it. */

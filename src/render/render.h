@@ -134,6 +134,8 @@ TetcastStatus tc_scene_render(const TetcastScene *scene, const TetcastCamera *ca
  * makes a good first picture of the scene's volume and field; and colour map `name` with one that rises linearly. */
 TetcastStatus tc_scene_fit(const TetcastScene *scene, const TetcastTransferFunction *shape, double low, double high,
                            TetcastTransferFunction **transfer);
+TetcastStatus tc_opacity_factor(TetcastContext *context, const double *depths, int64_t count, double opacity,
+                                bool clear, double *factor);
 TetcastStatus tc_scene_preset(const TetcastScene *scene, const char *name, double low, double high,
                               TetcastTransferFunction **transfer);
 

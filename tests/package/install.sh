@@ -118,6 +118,15 @@ for adapter in $ADAPTERS; do
     *) fail "tetcast-$adapter.pc does not name its libraries" ;;
   esac
 done
+case " $ADAPTERS " in
+  *" mpi "*)
+    [ -x "$work/cmake/partitioned" ] || fail "the example of several ranks was not built"
+    if [ -n "${FORTRAN-}" ]; then
+      # shellcheck disable=SC2046
+      (cd "$work/pkg-config" && quietly "$FORTRAN" -c $(pkg-config --variable=fortran tetcast) $(pkg-config --variable=fortran tetcast-mpi)) || exit 1
+    fi
+    ;;
+esac
 unset LD_LIBRARY_PATH
 
 # 3. The command finds its libraries where the tree now lies.

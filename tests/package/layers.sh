@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# layers.sh SOURCE: a folder of src may include only from itself and from folders above it, io and cli nothing but the public headers, whether
+# layers.sh SOURCE: a folder of src may include only from itself and from folders above it, io, mpi and cli nothing but the public headers, whether
 # directly or through what they include; optics knows nothing of meshes; only one file knows Embree, only an adapter its library.
 set -eu
 cd "$1"
@@ -79,11 +79,12 @@ done
 # shellcheck disable=SC2086
 check tetcast.c $above
 check cli
+check mpi
 for adapter in src/io/*/; do
   check "io/$(basename "$adapter")" io/floating.hpp
 done
 for folder in src/*/; do
-  case " $core io cli fortran " in
+  case " $core io cli fortran mpi " in
     *" $(basename "$folder") "*) ;;
     *) complain "$folder is not one of the folders that are tested" ;;
   esac
@@ -91,9 +92,9 @@ done
 
 never optics '^src/mesh/|^include/tetcast/(mesh|field|cells|volume|scene|frame|dataset|surface)[.]h$' 'optics knows no mesh'
 for folder in $core tetcast.c; do
-  never $folder '^include/tetcast/(dataset|surface|tetgen|image)[.]h$' 'the core knows no adapter'
+  never $folder '^include/tetcast/(dataset|surface|tetgen|image|mpi)[.]h$' 'the core knows no adapter'
 done
-if grep -E '^include/tetcast/tetcast[.]h include/tetcast/(dataset|surface|tetgen|image)[.]h ' "$reached"; then
+if grep -E '^include/tetcast/tetcast[.]h include/tetcast/(dataset|surface|tetgen|image|mpi)[.]h ' "$reached"; then
   complain "the header of all of the core includes an adapter's"
 fi
 while read -r file _ && [ -n "$file" ]; do
@@ -147,6 +148,7 @@ only 'embree|rtcore' src/volume/embree.c
 only 'vtk[A-Z]' src/io/vtk/
 only 'tetgen[.]h' src/io/tetgen/
 only 'OpenImageIO' src/io/openimageio/
+only 'mpi[.]h' src/mpi/
 only 'jansson' src/cli/
 
 # That the test sees anything at all.

@@ -110,6 +110,53 @@ static void few_rays_are_opaque(void **state) {
   world_end(&world);
 }
 
+/* What has been measured elsewhere, by rays of those depths, and a shape that is moved without a scene. */
+static void depths_may_come_from_elsewhere(void **state) {
+  (void)state;
+  World world;
+  world_begin(&world, 2, 0, 1, TETCAST_TRAVERSAL_SHELL);
+  TetcastContext *context = world.fixture.context;
+  double depths[40], given[40], factor = 0;
+  for (int clear = 0; clear < 2; ++clear) {
+    for (int power = -300; power <= 300; power += 100) { /* the unit of length doesn't matter */
+      double mean = 0;
+      for (int i = 0; i < 40; ++i)
+        depths[i] = (0.1 + 0.01 * ((7 * i) % 40)) * pow(10, power);
+      memcpy(given, depths, sizeof given);
+      assert_int_equal(tetcast_opacity_factor(context, depths, 40, 0.4, clear, &factor), TETCAST_OK);
+      for (int i = 0; i < 40; ++i)
+        mean -= expm1(-depths[i] * factor) / 40;
+      assert_true(fabs(mean - 0.4) < 1e-12);
+      assert_memory_equal(depths, given, sizeof given); /* sorted is a copy */
+    }
+  }
+  for (int i = 0; i < 40; ++i)
+    depths[i] = i < 3 ? 1000 : 1;
+  assert_int_equal(tetcast_opacity_factor(context, depths, 40, 0.9, 1, &factor), TETCAST_OK);
+  assert_true(factor < 0.26); /* three in forty are opaque: as clear as the mean depth may be */
+  assert_int_equal(tetcast_opacity_factor(context, depths, 40, 0.9, 0, &factor), TETCAST_OK);
+  assert_true(factor <= 6 / (3037 / 40.) * (1 + 1e-12));
+  assert_int_equal(tetcast_opacity_factor(context, depths, 0, 0.5, 1, &factor), TETCAST_ERROR_ARGUMENT);
+  assert_int_equal(tetcast_opacity_factor(context, depths, 40, 1, 1, &factor), TETCAST_ERROR_ARGUMENT);
+  depths[7] = 0;
+  assert_int_equal(tetcast_opacity_factor(context, depths, 40, 0.5, 1, &factor), TETCAST_ERROR_ARGUMENT);
+  assert_string_equal(world.fixture.message, "optical depth 7 is 0");
+  TetcastTransferFunction *shape = ramp(&world, 0, 1, 0.5, 2), *moved = NULL;
+  int64_t count;
+  assert_int_equal(tetcast_transfer_function_stretch(context, shape, 10, 30, 7, &moved), TETCAST_OK);
+  const double *knots = tetcast_transfer_function_extinction(moved, &count);
+  assert_true(count == 2 && knots[0] == 10 && knots[1] == 1.75 && knots[2] == 30 && knots[3] == 7);
+  tetcast_transfer_function_destroy(&moved);
+  assert_int_equal(tetcast_transfer_function_stretch(context, shape, 3, 3, 7, &moved), TETCAST_OK);
+  knots = tetcast_transfer_function_extinction(moved, &count);
+  assert_true(count == 1 && knots[0] == 3 && knots[1] == 7);
+  tetcast_transfer_function_destroy(&moved);
+  assert_int_equal(tetcast_transfer_function_stretch(context, shape, 4, 3, 7, &moved), TETCAST_ERROR_ARGUMENT);
+  assert_int_equal(tetcast_transfer_function_stretch(context, shape, 3, 4, -1, &moved), TETCAST_ERROR_ARGUMENT);
+  tetcast_transfer_function_destroy(&shape);
+  world_end(&world);
+}
+
 static void what_cannot_be_is_refused(void **state) {
   (void)state;
   World world;
@@ -136,8 +183,8 @@ static void what_cannot_be_is_refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_scaled_function_is_as_opaque_as_asked),
-                                     cmocka_unit_test(few_rays_are_opaque),
-                                     cmocka_unit_test(what_cannot_be_is_refused)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_scaled_function_is_as_opaque_as_asked), cmocka_unit_test(few_rays_are_opaque),
+      cmocka_unit_test(depths_may_come_from_elsewhere), cmocka_unit_test(what_cannot_be_is_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
