@@ -219,9 +219,10 @@ typedef struct TetcastRenderDesc {
    * So pictures are made of parts of rays, which composited front to back give the whole. What is met exactly where one
    * part ends and the next begins is in one of them, but for the boundary's faces, which may be in both. */
   const TetcastArray *start;
-  /* Above 0: the frame has some rows of a picture with so many, each of which is, to the bit, what it is in the whole
-   * picture; a picture that doesn't fit into memory is made so. At least first_row + the frame's height, at most 2^20.
-   * Default: 0, the frame is the picture. Not with `stop`, `start` or adaptive_coarse (TETCAST_ERROR_ARGUMENT). */
+  /* Above 0: the frame has some rows of a picture with so many, each of which is what it is in the whole picture, up to
+   * rounding; and to the bit, if the frame begins at a multiple of 16 rows and ends at one, or at the picture's end. A
+   * picture that doesn't fit into memory is made so. At least first_row + the frame's height, at most 2^20. Default: 0,
+   * the frame is the picture. Not with `stop`, `start` or adaptive_coarse (TETCAST_ERROR_ARGUMENT). */
   int64_t picture_height;
   /* With picture_height, the row of the picture that is the frame's first. Default: 0, the topmost. */
   int64_t first_row;
