@@ -55,6 +55,13 @@ typedef struct TetcastDatasetDesc {
   /* Whether tetcast_dataset_sources() is wanted, which takes 4 bytes for each tetrahedron where cells are cut. Default:
    * false. */
   bool sources;
+  /* Whether the file is one of several that make up a mesh (tetcast_dataset_parts()), each of which is read by itself.
+   * If it holds no volumetric cells, or none but ghosts, it is a dataset without tetrahedra then, not an error. And of
+   * cells that are cut, faces are cut by their corners' coordinates, so that cells of two files cut the face between
+   * them in the same way; for that, points are sorted. Where faces bulge, or fields are not linear in space, that is
+   * another way than that of the mesh as a whole, and no worse. (On the lattices of curved cells, points of two files
+   * may differ by rounding.) Default: false. */
+  bool part;
 } TetcastDatasetDesc;
 
 /* Makes a desc of all blocks, all arrays and the first step, with every setting at its default. */
@@ -89,6 +96,17 @@ TETCAST_API bool tetcast_dataset_format(int i, const char **name, const char **e
  * use them. A warning says how often each of these was so. */
 TETCAST_API TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path,
                                                const TetcastDatasetDesc *desc, TetcastDataset **dataset);
+
+/* Is told of a file that another one lists: its path, and its size in bytes, 0 if it is not there. The path is valid
+ * during the call only. */
+typedef void TetcastDatasetPart(void *user, const char *path, int64_t bytes);
+
+/* Tells which files a file in pieces or blocks, or a step of a series, consists of, so that each can be read by itself:
+ * calls part(user, …) for each file that tetcast_dataset_read() would read for `desc` (NULL: defaults), in that order,
+ * but not for surfaces. Only block, step and time of `desc` count; they have no meaning for the files then. None is
+ * told of a file that lists no others. Reading one of them with TetcastDatasetDesc.part reads its part of the mesh. */
+TETCAST_API TetcastStatus tetcast_dataset_parts(TetcastContext *context, const char *path,
+                                                const TetcastDatasetDesc *desc, TetcastDatasetPart *part, void *user);
 
 /* Frees the dataset and sets *dataset to NULL. NULL and pointer to NULL do nothing. */
 TETCAST_API void tetcast_dataset_destroy(TetcastDataset **dataset);

@@ -28,14 +28,17 @@ typedef struct Symbol {
 CLI_VTK_FUNCTIONS(CHECKED)
 CLI_TETGEN_FUNCTIONS(CHECKED)
 CLI_IMAGE_FUNCTIONS(CHECKED)
+CLI_MPI_FUNCTIONS(CHECKED)
 
 #define VTK_SYMBOL(result, name, parameters)    {"tetcast_" #name, offsetof(CliVtk, name)},
 #define TETGEN_SYMBOL(result, name, parameters) {"tetcast_" #name, offsetof(CliTetgen, name)},
 #define IMAGE_SYMBOL(result, name, parameters)  {"tetcast_" #name, offsetof(CliImage, name)},
+#define MPI_SYMBOL(result, name, parameters)    {"tetcast_" #name, offsetof(CliMpi, name)},
 
 static const Symbol vtk_symbols[] = {CLI_VTK_FUNCTIONS(VTK_SYMBOL){NULL, 0}};
 static const Symbol tetgen_symbols[] = {CLI_TETGEN_FUNCTIONS(TETGEN_SYMBOL){NULL, 0}};
 static const Symbol image_symbols[] = {CLI_IMAGE_FUNCTIONS(IMAGE_SYMBOL){NULL, 0}};
+static const Symbol mpi_symbols[] = {CLI_MPI_FUNCTIONS(MPI_SYMBOL){NULL, 0}};
 
 /* Adapters lie beside libtetcast. A sanitizer's dlopen() does not see the command's own RUNPATH, so it is not left to
  * that alone. */
@@ -85,6 +88,11 @@ const CliTetgen *cli_tetgen(void) {
 const CliImage *cli_image(void) {
   static CliImage image;
   return image.image_write || load(SONAME("openimageio"), "writing an image", image_symbols, &image) ? &image : NULL;
+}
+
+const CliMpi *cli_mpi(void) {
+  static CliMpi mpi;
+  return mpi.mpi_render || load(SONAME("mpi"), "--mpi", mpi_symbols, &mpi) ? &mpi : NULL;
 }
 
 TetcastStatus cli_write_pixels(TetcastContext *context, const char *path, float *pixels, int64_t width, int64_t height,

@@ -5,6 +5,7 @@
 
 #include <tetcast/dataset.h>
 #include <tetcast/image.h>
+#include <tetcast/mpi.h>
 #include <tetcast/tetgen.h>
 
 /* X(result, name, parameters) for each function tetcast_NAME of an adapter; adapter.c checks them against the headers.
@@ -13,6 +14,8 @@
   X(TetcastDatasetDesc, dataset_desc_default, (void))                                                                  \
   X(bool, dataset_format, (int, const char **, const char **))                                                         \
   X(TetcastStatus, dataset_read, (TetcastContext *, const char *, const TetcastDatasetDesc *, TetcastDataset **))      \
+  X(TetcastStatus, dataset_parts,                                                                                      \
+    (TetcastContext *, const char *, const TetcastDatasetDesc *, TetcastDatasetPart *, void *))                        \
   X(void, dataset_destroy, (TetcastDataset **))                                                                        \
   X(bool, dataset_cell_type, (const TetcastDataset *, int, const char **, int64_t *))                                  \
   X(bool, dataset_array, (const TetcastDataset *, int, TetcastDatasetArray *))                                         \
@@ -50,6 +53,29 @@
   X(TetcastStatus, image_check, (TetcastContext *, const char *, const TetcastImageDesc *))                            \
   X(TetcastStatus, image_read_depth, (TetcastContext *, const char *, int64_t, int64_t, double *))
 
+#define CLI_MPI_FUNCTIONS(X)                                                                                           \
+  X(TetcastStatus, mpi_create_world, (TetcastContext *, TetcastMpi **))                                                \
+  X(void, mpi_destroy, (TetcastMpi **))                                                                                \
+  X(int, mpi_rank, (const TetcastMpi *))                                                                               \
+  X(int, mpi_size, (const TetcastMpi *))                                                                               \
+  X(TetcastStatus, mpi_agree, (TetcastMpi *, TetcastStatus))                                                           \
+  X(TetcastStatus, mpi_bounds, (TetcastMpi *, double *))                                                               \
+  X(TetcastStatus, mpi_range, (TetcastMpi *, double *))                                                                \
+  X(TetcastStatus, mpi_sum, (TetcastMpi *, const double *, int64_t, int64_t, double *))                                \
+  X(TetcastStatus, mpi_statistics, (TetcastMpi *, const TetcastStatistics *const *, int64_t, TetcastStatistics **))    \
+  X(TetcastStatus, mpi_broadcast, (TetcastMpi *, int, void *, int64_t))                                                \
+  X(TetcastStatus, mpi_send, (TetcastMpi *, int, const void *, int64_t))                                               \
+  X(TetcastStatus, mpi_receive, (TetcastMpi *, int, void *, int64_t))                                                  \
+  X(TetcastStatus, mpi_scale_transfer_function,                                                                        \
+    (TetcastMpi *, TetcastScene *const *, int64_t, const double *, const TetcastTransferFunction *,                    \
+     const TetcastCamera *, double, TetcastTransferFunction **))                                                       \
+  X(TetcastStatus, mpi_fit_transfer_function,                                                                          \
+    (TetcastMpi *, TetcastScene *const *, int64_t, const double *, const TetcastTransferFunction *, double, double,    \
+     TetcastTransferFunction **))                                                                                      \
+  X(TetcastStatus, mpi_render,                                                                                         \
+    (TetcastMpi *, const TetcastScene *const *, int64_t, const TetcastCamera *, const TetcastRenderDesc *,             \
+     TetcastFrame *, TetcastMpiStats *))
+
 /* The functions under the adapter's names without "tetcast_", e.g. vtk->dataset_read(…). */
 #define CLI_MEMBER(result, name, parameters) result(*name) parameters;
 typedef struct CliVtk {
@@ -61,12 +87,16 @@ typedef struct CliTetgen {
 typedef struct CliImage {
   CLI_IMAGE_FUNCTIONS(CLI_MEMBER)
 } CliImage;
+typedef struct CliMpi {
+  CLI_MPI_FUNCTIONS(CLI_MEMBER)
+} CliMpi;
 #undef CLI_MEMBER
 
 /* The adapter, loaded at the first call; NULL after a message if it is missing. */
 const CliVtk *cli_vtk(void);
 const CliTetgen *cli_tetgen(void);
 const CliImage *cli_image(void);
+const CliMpi *cli_mpi(void);
 
 /* Writes float pixels [height][width][4], red, green, blue and alpha, premultiplied, as an image. */
 TetcastStatus cli_write_pixels(TetcastContext *context, const char *path, float *pixels, int64_t width, int64_t height,

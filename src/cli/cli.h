@@ -39,6 +39,19 @@ int cli_verdict(int code);
 void cli_warn_once(void);
 bool cli_quiet(void);
 
+/* Makes the process one of several that run the same command line. What number 0 says the others don't say as well: of
+ * them, only what is about their share of the work is shown, with "rank N: " before it, which is what comes between
+ * cli_set_apart(true) and (false). */
+void cli_set_rank(int rank);
+void cli_set_apart(bool apart);
+int cli_rank(void);
+
+/* Whether an error has been shown. */
+bool cli_said(void);
+
+/* Makes warnings of errors from here on, until it is called with false: for what one can do without. */
+void cli_set_lenient(bool lenient);
+
 /* While a thread holds them, messages of the others are kept, to be shown when it lets go. */
 void cli_messages_hold(bool hold);
 

@@ -43,6 +43,7 @@ typedef struct Data {
   TetcastContext *context;
   const TetcastMesh *mesh;
   const TetcastField *field;
+  const DesignDesc *desc;
   double range[2]; /* of all values */
   Shares last;     /* what was found last, as it is asked for again; with an empty range: nothing yet */
 } Data;
@@ -58,7 +59,9 @@ static TetcastStatus find_shares(Data *data, const double range[2], Shares *shar
   memcpy(desc.range, range, sizeof desc.range);
   memcpy(shares->range, range, sizeof desc.range);
   desc.bins = BINS;
-  const TetcastStatus status = tetcast_statistics_create(data->context, data->mesh, data->field, &desc, &statistics);
+  const TetcastStatus status =
+      data->desc->statistics ? data->desc->statistics(data->desc->user, &desc, &statistics)
+                             : tetcast_statistics_create(data->context, data->mesh, data->field, &desc, &statistics);
   if (status != TETCAST_OK)
     return status;
   for (int i = 0; i < BINS; i++)
@@ -257,11 +260,12 @@ static void set_knots(Design *design, const double share[SHARES]) {
 
 TetcastStatus design_find(TetcastContext *context, const TetcastMesh *mesh, const TetcastField *field,
                           const DesignDesc *desc, Design *design) {
-  Data data = {.context = context, .mesh = mesh, .field = field};
+  Data data = {.context = context, .mesh = mesh, .field = field, .desc = desc};
   double share[SHARES];
-  tetcast_field_range(field, data.range, NULL);
   if (desc->whole)
     memcpy(data.range, desc->whole, sizeof data.range);
+  else
+    tetcast_field_range(field, data.range, NULL);
   TetcastStatus status = find_map(&data, desc, design);
   if (status == TETCAST_OK && design->map.range[0] < design->map.range[1]) {
     status = share_map(&data, &design->map, share);
@@ -276,11 +280,9 @@ TetcastStatus design_find(TetcastContext *context, const TetcastMesh *mesh, cons
 
 /* ── colours ── */
 
-TetcastStatus design_shade(TetcastContext *context, const TetcastScene *scene, const Design *design,
-                           const TetcastCamera *camera, const TetcastTransferFunction *map,
-                           TetcastTransferFunction **transfer_function) {
+TetcastStatus design_shape(TetcastContext *context, const Design *design, const TetcastTransferFunction *map,
+                           TetcastTransferFunction **shape) {
   enum { MOST = 4 * (COLORS - 1) + 1 };
-  TetcastTransferFunction *shape = NULL;
   int64_t count;
   const double *knots = tetcast_transfer_function_color(map, &count), *range = design->map.range;
   const double decades = design->map.logarithmic ? log10(range[1] / range[0]) : 0;
@@ -299,9 +301,5 @@ TetcastStatus design_shade(TetcastContext *context, const TetcastScene *scene, c
   desc.color_count = colors;
   desc.extinction = design->knots[0];
   desc.extinction_count = design->count;
-  TetcastStatus status = tetcast_transfer_function_create(context, &desc, &shape);
-  if (status == TETCAST_OK)
-    status = tetcast_scene_scale_transfer_function(scene, shape, camera, 0.5, transfer_function);
-  tetcast_transfer_function_destroy(&shape);
-  return status;
+  return tetcast_transfer_function_create(context, &desc, shape);
 }

@@ -6,8 +6,8 @@
 
 #include <stdbool.h>
 
-#include <tetcast/scene.h>
 #include <tetcast/statistics.h>
+#include <tetcast/transfer_function.h>
 
 /* How values become places on a colour map, from 0 to 1. */
 typedef struct DesignMap {
@@ -36,16 +36,18 @@ typedef struct DesignDesc {
   bool logarithmic;
   bool diverging;       /* the colour map that will be used is */
   const double *center; /* the value in the middle of a diverging map */
+  /* Where the statistics of the values come from, in place of the mesh and the field, which may be NULL then; `whole`
+   * is needed with it. */
+  TetcastStatus (*statistics)(void *user, const TetcastStatisticsDesc *desc, TetcastStatistics **statistics);
+  void *user;
 } DesignDesc;
 
 /* Finds what shows the most of a field: every range of colours about the same amount of it. */
 TetcastStatus design_find(TetcastContext *context, const TetcastMesh *mesh, const TetcastField *field,
                           const DesignDesc *desc, Design *design);
 
-/* Makes the transfer function, of the colours that a colour map has over [0, 1], for a scene that has the field; so
- * that this camera sees neither a fog nor a wall. */
-TetcastStatus design_shade(TetcastContext *context, const TetcastScene *scene, const Design *design,
-                           const TetcastCamera *camera, const TetcastTransferFunction *map,
-                           TetcastTransferFunction **transfer_function);
+/* Makes the transfer function but for that factor, of the colours that a colour map has over [0, 1]. */
+TetcastStatus design_shape(TetcastContext *context, const Design *design, const TetcastTransferFunction *map,
+                           TetcastTransferFunction **shape);
 
 #endif

@@ -17,7 +17,7 @@ static const char *const label_names[] = {
     "region_id", "regions",     "domain",          "subdomain",       "zone",        "zoneid",       "part",
     "partid",    "part_id",     "objectid",        "elementblockids", "blockid",     "block_id",     "attribute",
     "medit:ref", "geometrical", "gmsh:geometrical"};
-enum { LABEL_NAMES = sizeof label_names / sizeof *label_names, LABELS_MOST = 256, LABELS_FEW = 32 };
+enum { LABEL_NAMES = sizeof label_names / sizeof *label_names, LABELS_FEW = 32 };
 
 bool matter_wanted(const TetcastDataset *dataset, const char **label) {
   int best = LABEL_NAMES;
@@ -44,11 +44,11 @@ static int ascending(const void *a, const void *b) {
 }
 
 /* The values that a field has, each once; if there are too many for colours, none. */
-static void collect(const TetcastField *field, Matter *matter) {
+void matter_collect(const TetcastField *field, Matter *matter) {
   const int64_t count = tetcast_field_values(field).count;
-  double *labels = cli_allocate(sizeof *labels * (LABELS_MOST + 1)), last = (double)NAN;
+  double *labels = cli_allocate(sizeof *labels * (MATTER_LABELS + 1)), last = (double)NAN;
   int found = 0;
-  for (int64_t i = 0; i < count && found <= LABELS_MOST; i++) {
+  for (int64_t i = 0; i < count && found <= MATTER_LABELS; i++) {
     const double value = tetcast_field_value(field, i);
     if (value == last || bsearch(&value, labels, (size_t)found, sizeof value, ascending))
       continue;
@@ -57,7 +57,22 @@ static void collect(const TetcastField *field, Matter *matter) {
   }
   matter_release(matter);
   matter->labels = labels;
-  matter->count = found <= LABELS_MOST ? found : 0;
+  matter->count = found <= MATTER_LABELS ? found : 0;
+}
+
+void matter_unite(const Matter *other, Matter *matter) {
+  double *labels = cli_allocate(sizeof *labels * (size_t)(matter->count + other->count + 1));
+  int count = 0, i = 0, k = 0;
+  while (i < matter->count || k < other->count) {
+    const bool own = k == other->count || (i < matter->count && matter->labels[i] <= other->labels[k]);
+    const double value = own ? matter->labels[i++] : other->labels[k++];
+    if (count == 0 || labels[count - 1] != value)
+      labels[count++] = value;
+  }
+  const bool fine = count <= MATTER_LABELS && other->count > 0 && (matter->count > 0 || !matter->labels);
+  matter_release(matter);
+  matter->labels = labels;
+  matter->count = fine ? count : 0;
 }
 
 bool matter_is_label(const TetcastDataset *dataset, const char *selector, const TetcastField *field) {
@@ -69,14 +84,14 @@ bool matter_is_label(const TetcastDataset *dataset, const char *selector, const 
     if (strcmp(array.selector, selector) || array.association != TETCAST_CELL || array.components != 1 || !whole)
       continue;
     Matter matter = {.labels = NULL};
-    collect(field, &matter);
+    matter_collect(field, &matter);
     const int count = matter.count;
     matter_release(&matter);
     bool named = false;
     for (int k = 0; k < LABEL_NAMES; k++)
       named = named || !strcasecmp(array.name, label_names[k]);
     if (named && count == 0)
-      cli_note("array %s has more than %d labels: drawn as numbers", array.name, LABELS_MOST);
+      cli_note("array %s has more than %d labels: drawn as numbers", array.name, MATTER_LABELS);
     return count > 0 && (named || count <= LABELS_FEW);
   }
   return false;
@@ -108,7 +123,7 @@ TetcastStatus matter_measure(TetcastContext *context, const TetcastVolume *volum
     status = tetcast_scene_create_preset(scene, tetcast_preset_name(0), 1, 1, &preset);
   if (status == TETCAST_OK) {
     int64_t count;
-    collect(labels, matter);
+    matter_collect(labels, matter);
     matter->extinction = tetcast_transfer_function_extinction(preset, &count)[1];
   }
   tetcast_transfer_function_destroy(&preset);

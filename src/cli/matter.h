@@ -25,9 +25,18 @@ TetcastStatus matter_field(TetcastContext *context, const TetcastMesh *mesh, Tet
 /* What is needed of matter that has labels, while its field is there. */
 typedef struct Matter {
   double extinction; /* by which rays through the mesh are half opaque on average */
-  double *labels;    /* [count], ascending; at most as many as colours can tell apart for somebody who looks for it */
-  int count;
+  double *labels;    /* [count], ascending; NULL: they have not been collected */
+  int count;         /* at most MATTER_LABELS; 0: there are more */
 } Matter;
+
+/* As many as colours can tell apart for somebody who looks for it. */
+enum { MATTER_LABELS = 256 };
+
+/* The labels alone. */
+void matter_collect(const TetcastField *labels, Matter *matter);
+
+/* Adds those of another part of the mesh; one that has none has too many. */
+void matter_unite(const Matter *other, Matter *matter);
 
 TetcastStatus matter_measure(TetcastContext *context, const TetcastVolume *volume, const TetcastMesh *mesh,
                              const TetcastField *labels, Matter *matter);

@@ -15,7 +15,10 @@ static struct {
   const char *place, *hint;
   bool failed; /* an error has been shown; guarded by the lock of stderr, as is the list */
   bool once, strict;
-  bool refused;    /* a warning was an error */
+  bool refused; /* a warning was an error */
+  bool apart, lenient;
+  bool said; /* an error has come on standard error */
+  int rank;
   char **warnings; /* that were shown, without their digits */
   int count, capacity;
   bool held;
@@ -48,6 +51,26 @@ int cli_verdict(int code) {
   return code == CLI_DONE && refused ? CLI_FAILED : code;
 }
 
+void cli_set_rank(int rank) {
+  messages.rank = rank;
+}
+
+void cli_set_apart(bool apart) {
+  messages.apart = apart;
+}
+
+bool cli_said(void) {
+  return messages.said;
+}
+
+int cli_rank(void) {
+  return messages.rank;
+}
+
+void cli_set_lenient(bool lenient) {
+  messages.lenient = lenient;
+}
+
 void cli_warn_once(void) {
   messages.once = true;
 }
@@ -67,7 +90,12 @@ void cli_set_hint(const char *hint) {
 /* One call of fprintf, as lines may come from several threads; control characters of file and array names stay out of
  * the line. */
 static void show(const char *kind, const char *place, const char *text) {
-  char *line = cli_print("%s%s%s", place ? place : "", place ? ": " : "", text);
+  if (messages.rank > 0 && !messages.apart) /* another process says it */
+    return;
+  messages.said = messages.said || !strcmp(kind, "error");
+  char *rank = messages.rank > 0 ? cli_print("rank %d: ", messages.rank) : NULL;
+  char *line = cli_print("%s%s%s%s", rank ? rank : "", place ? place : "", place ? ": " : "", text);
+  free(rank);
   for (char *c = line; *c; c++)
     if (iscntrl((unsigned char)*c))
       *c = ' ';
@@ -128,7 +156,7 @@ static void show_warning(const char *place, const char *text) {
 
 static void show_note(const char *text) {
   flockfile(stderr);
-  if (!keep(MESSAGE_NOTE, NULL, text) && !messages.quiet && !messages.refused && !messages.failed)
+  if (!keep(MESSAGE_NOTE, NULL, text) && !messages.quiet && !messages.refused && !messages.failed && messages.rank == 0)
     show("note", NULL, text);
   funlockfile(stderr);
 }
@@ -157,7 +185,7 @@ static void receive(void *user, TetcastSeverity severity, const char *text) {
   (void)user;
   if (severity == TETCAST_SEVERITY_ERROR) {
     char *whole = cli_print("%s%s", text, messages.hint ? messages.hint : "");
-    show_error(messages.place, whole);
+    (messages.lenient ? show_warning : show_error)(messages.place, whole);
     free(whole);
   }
   if (severity == TETCAST_SEVERITY_WARNING)

@@ -8,6 +8,7 @@
 #include "cli.h"
 #include "file.h"
 #include "progress.h"
+#include "ranks.h"
 
 char *picture_default_output(const char *input) {
   const char *name = cli_path_name(input);
@@ -152,15 +153,17 @@ int picture_render(Run *run) {
     const double start = cli_seconds();
     desc.progress = cli_progress("rendering");
     desc.stop = run->stop ? &stop : NULL;
-    TetcastStatus status =
-        tetcast_scene_render(run->stage.scene, &run->stage.camera, &desc, run->frame, &stats->render);
+    TetcastStatus status = ranks_render(&run->stage, &desc, run->frame, &stats->render);
     if (status == TETCAST_OK && range_of_picture(run))
       status = color_by_picture(run);
     stats->render_seconds[i] = cli_seconds() - start;
     cli_progress_clear();
-    if (status != TETCAST_OK || cli_interrupted())
+    if (status != TETCAST_OK ||
+        (cli_interrupted() && !run->stage.others)) /* over ranks, the next call says so to all */
       return cli_failed(status);
   }
+  if (!ranks_first(&run->stage))
+    return cli_verdict(CLI_DONE);
   if (render_options_deep(&run->options)) {
     const TetcastStatus status = deep_render(&run->deep, &run->stage, &run->options, &desc, run->frame);
     if (status != TETCAST_OK || cli_interrupted())

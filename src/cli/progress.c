@@ -25,8 +25,10 @@ static void end(int signal_number) {
     return;
   static const char text[] = "\r\033[Ktetcast: error: interrupted\n";
   const size_t skip = bar.visible ? 0 : 4; /* a bar is removed */
-  const ssize_t ignored = write(STDERR_FILENO, text + skip, sizeof text - 1 - skip);
-  (void)ignored;
+  if (cli_rank() == 0) {
+    const ssize_t ignored = write(STDERR_FILENO, text + skip, sizeof text - 1 - skip);
+    (void)ignored;
+  }
   _exit(128 + signal_number);
 }
 
@@ -93,7 +95,7 @@ static bool advance(void *user, double fraction) {
 }
 
 static void begin_bar(const char *label) {
-  bar.label = !cli_quiet() && isatty(STDERR_FILENO) ? label : NULL;
+  bar.label = !cli_quiet() && cli_rank() == 0 && isatty(STDERR_FILENO) ? label : NULL;
   bar.started = cli_seconds();
   bar.drawn = 0;
 }

@@ -14,6 +14,7 @@
 #include "fileset.h"
 #include "preset_list.h"
 #include "progress.h"
+#include "ranks.h"
 #include "render_parse.h"
 #include "scene_file.h"
 #include "series.h"
@@ -45,12 +46,16 @@ static int check(Run *run) {
                                      "expected --range LO,HI or --range step");
   if (code >= 0)
     return code;
+  if (options->mpi && options->threads == 0)
+    options->threads = ranks_threads();
   code = stage_begin(&run->stage, options);
+  code = ranks_begin(&run->stage, options, code);
   if (code != CLI_DONE)
     return code;
-  tidy(options);
-  if ((options->stats && !cli_file_check(options->stats)) ||
-      (options->save_scene && !cli_file_check(options->save_scene)))
+  if (ranks_first(&run->stage))
+    tidy(options);
+  if (ranks_first(&run->stage) && ((options->stats && !cli_file_check(options->stats)) ||
+                                   (options->save_scene && !cli_file_check(options->save_scene))))
     return CLI_FAILED;
   if (render_options_given(options, OPTION_EMISSION) && !render_options_given(options, OPTION_BACKGROUND))
     options->background[0] = options->background[1] = options->background[2] = 0; /* radiance is shown on black */
@@ -98,9 +103,12 @@ static int check_image(Run *run) {
   return run->options.stop_depth ? picture_read_stop(run) : cli_verdict(CLI_DONE);
 }
 
-/* What the command ends with. */
+/* What the command ends with. Over ranks, that has been agreed on: mpirun ends those that are left when the first has
+ * gone, which is no interruption. */
 static int outcome(int code) {
-  if (!cli_interrupted())
+  if (ranks_foreseen() && cli_rank() == 0 && code > 128)
+    fputs("tetcast: error: interrupted\n", stderr);
+  if (ranks_foreseen() || !cli_interrupted())
     return code;
   fputs("tetcast: error: interrupted\n", stderr);
   return 128 + cli_interrupted();
@@ -122,6 +130,8 @@ static void *check_image_aside(void *argument) {
 /* Loading the image library takes about as long as reading a large mesh, and both are work for one processor: they are
  * done at the same time. */
 static int begin_image(Run *run) {
+  if (run->stage.others) /* all have to know of it before they read */
+    return ranks_first(&run->stage) ? check_image(run) : CLI_DONE;
   if (!cli_vtk()) /* before the thread begins: only one library is loaded at a time */
     return CLI_FAILED;
   sem_init(&run->image_begun, 0, 0);
@@ -135,12 +145,12 @@ static int begin_image(Run *run) {
 
 /* Reads the input and prepares the scene, after which nothing of the dataset stays in memory. */
 static int load(Run *run) {
-  int code = stage_read(&run->stage, &run->options);
+  int code = ranks_read(&run->stage, &run->options);
   if (code == CLI_DONE)
-    code = stage_prepare(&run->stage, &run->options);
+    code = ranks_prepare(&run->stage, &run->options);
   stage_drop_dataset(&run->stage);
   if (code == CLI_DONE)
-    code = stage_shade(&run->stage, &run->options, run->stage.range);
+    code = ranks_agree(&run->stage, stage_shade(&run->stage, &run->options, run->stage.range));
   return code;
 }
 
@@ -157,30 +167,44 @@ static int check_sight(const Run *run) {
 static int make_picture(Run *run) {
   if (render_options_given(&run->options, OPTION_TILES))
     return tiles_perform(run);
-  int code = picture_create_frame(run, (int64_t)run->options.size[0], (int64_t)run->options.size[1]);
+  const bool first = ranks_first(&run->stage);
+  int code = CLI_DONE;
+  if (first)
+    code = picture_create_frame(run, (int64_t)run->options.size[0], (int64_t)run->options.size[1]);
+  code = ranks_agree(&run->stage, code);
   if (code == CLI_DONE)
-    code = picture_render(run);
-  if (code == CLI_DONE)
+    code = ranks_agree(&run->stage, picture_render(run));
+  if (code == CLI_DONE && first)
     code = check_sight(run);
-  return code == CLI_DONE ? picture_write(run, run->options.output) : code;
+  if (code == CLI_DONE && first)
+    code = picture_write(run, run->options.output);
+  return ranks_agree(&run->stage, code);
 }
 
 static int write_files(Run *run) {
   const RenderOptions *options = &run->options;
   const Stage *stage = &run->stage;
+  json_t *ranks = options->stats ? ranks_stats(stage) : NULL;
+  if (!ranks_first(stage)) {
+    json_decref(ranks);
+    return CLI_DONE;
+  }
   if (options->save_scene && !scene_file_write(options, stage->array, &stage->camera, stage->transfer_function,
                                                stage->rows.source, stage->shown))
     return CLI_FAILED;
-  return !options->stats || cli_json_write(options->stats, picture_stats(run)) ? CLI_DONE : CLI_FAILED;
+  json_t *stats = options->stats ? picture_stats(run) : NULL;
+  if (ranks)
+    json_object_set_new(stats, "ranks", ranks);
+  return !stats || cli_json_write(options->stats, stats) ? CLI_DONE : CLI_FAILED;
 }
 
 static int perform(Run *run) {
   cli_warn_once();          /* what the check of the output says, and writing it again, and each step of a series */
   cli_interrupt_hold(true); /* checks put files in folders for a moment */
-  int code = check(run);
+  int code = ranks_agree(&run->stage, check(run));
   cli_interrupt_hold(false);
   if (code == CLI_DONE)
-    code = begin_image(run);
+    code = ranks_agree(&run->stage, begin_image(run));
   if (code == CLI_DONE && series_wanted(&run->options))
     return series_perform(run);
   if (code == CLI_DONE)
@@ -188,12 +212,13 @@ static int perform(Run *run) {
   if (code == CLI_DONE)
     code = make_picture(run);
   if (code == CLI_DONE)
-    code = write_files(run);
+    code = ranks_agree(&run->stage, write_files(run));
   return code;
 }
 
 int tetcast_cli_render(int argc, char **argv) {
   Run run = {.options = render_options_default(COMMAND_RENDER)};
+  ranks_foresee(argc, argv);
   int code = render_options_parse(&run.options, argc, argv);
   if (code < 0) {
     cli_set_quiet(run.options.quiet);
@@ -202,6 +227,9 @@ int tetcast_cli_render(int argc, char **argv) {
   }
   picture_await_image(&run);
   tetcast_frame_destroy(&run.frame);
+  if (code != CLI_DONE)
+    ranks_wait(&run.stage);
+  ranks_end(&run.stage);
   stage_release(&run.stage);
   deep_release(&run.deep);
   free(run.stop);

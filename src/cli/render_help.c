@@ -46,6 +46,7 @@ const char render_help[] =
     "      --stats FILE        times and counts   --repeat N   for timing   --strict, --quiet   warnings: errors, "
     "none\n"
     "      --scene FILE        settings from JSON; options given here win   --save-scene FILE   writes them all\n"
+    "      --mpi               over the processes of mpirun -n N, each with its pieces of the mesh\n"
     "  -h, --help              this text; man tetcast-render says more\n"
     "\n"
     "Example: tetcast render flow.vtu --array velocity:mag --preset inferno --eye 3,1,8 -o flow.png\n";

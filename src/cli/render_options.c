@@ -178,6 +178,7 @@ const RenderRow render_table[OPTION_COUNT] = {
     [OPTION_SCENE] = {"scene", KIND_PATH, AT(scene), .form = "expected a path"},
     [OPTION_SAVE_SCENE] = {"save-scene", KIND_PATH, AT(save_scene), .only = COMMAND_RENDER, .form = "expected a path"},
     [OPTION_RESUME] = {"resume", KIND_FLAG, AT(resume), .only = COMMAND_RENDER, .form = "expected true or false"},
+    [OPTION_MPI] = {"mpi", KIND_FLAG, AT(mpi), .only = COMMAND_RENDER, .form = "expected true or false"},
     [OPTION_STRICT] = {"strict", KIND_FLAG, AT(strict), .form = "expected true or false"},
     [OPTION_QUIET] = {"quiet", KIND_FLAG, AT(quiet), .form = "expected true or false"},
     [OPTION_REFINE] = {"refine", KIND_FLAG, AT(refine), .only = COMMAND_CONVERGE},
@@ -275,9 +276,8 @@ OptionId render_option_find(const char *key) {
 }
 
 const char *render_option_key(OptionId id) {
-  return render_option_of_command(id, COMMAND_RENDER) && id != OPTION_SCENE && id != OPTION_SAVE_SCENE
-             ? render_table[id].name
-             : NULL;
+  const bool of_runs = id == OPTION_SCENE || id == OPTION_SAVE_SCENE || id == OPTION_MPI; /* and of no picture */
+  return render_option_of_command(id, COMMAND_RENDER) && !of_runs ? render_table[id].name : NULL;
 }
 
 bool render_option_is_path(OptionId id) {

@@ -81,6 +81,7 @@ typedef enum OptionId {
   OPTION_SCENE,
   OPTION_SAVE_SCENE,
   OPTION_RESUME,
+  OPTION_MPI,
   OPTION_STRICT,
   OPTION_QUIET,
   OPTION_REFINE,
@@ -135,7 +136,8 @@ typedef struct RenderOptions {
   RangeKind range_kind;   /* RANGE_FIXED: options->range; RANGE_QUANTILES: these shares of the volume */
   double subdivide, ambient_occlusion;
   int opacity_model, blend, shade, normals, view, traversal, isa, pixel_type; /* values of the library's enumerations */
-  int cell_to_point, no_displacement, quiet, strict, resume, refine, no_plots, groups, shadows, logarithmic, bare, soft;
+  int cell_to_point, no_displacement, quiet, strict, resume, refine, no_plots, groups, shadows, logarithmic, bare, soft,
+      mpi;
   int list_presets; /* instead of a picture */
   int basis;        /* a Basis */
   OptionSet given;  /* those that have a value from command line or scene file */

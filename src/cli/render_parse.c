@@ -15,6 +15,7 @@
 #include "completion.h"
 #include "ray_file.h"
 #include "scene_file.h"
+#include "series.h"
 #include "surface_text.h"
 #include "tiles.h"
 #include "tour.h"
@@ -141,6 +142,17 @@ static const char *find_flat(const RenderOptions *options) {
   return render_options_given(options, OPTION_OUTLINE) ? "--outline: not possible with --deep" : NULL;
 }
 
+/* What can't be with --mpi; of what a scene can't show, the library says so. NULL: nothing. */
+static const char *find_alone(const RenderOptions *options) {
+  if (!options->mpi)
+    return NULL;
+  if (series_wanted(options))
+    return "--mpi: for one picture, not for those of several inputs, --time all, --orbit and the like";
+  return render_options_deep(options) || render_options_given(options, OPTION_TILES)
+             ? "--mpi: not possible with --deep or --tiles"
+             : NULL;
+}
+
 /* What is wrong with options that are in order one by one (for free()), NULL: nothing. */
 static char *find_fault(const RenderOptions *options) {
   const char *view = view_fault(options);
@@ -152,6 +164,8 @@ static char *find_fault(const RenderOptions *options) {
     view = tour_fault(options);
   if (!view)
     view = tiles_fault(options);
+  if (!view)
+    view = find_alone(options);
   if (view)
     return cli_duplicate(view);
   if (options->command == COMMAND_CAST) /* what follows is about pictures */

@@ -92,7 +92,7 @@ static bool set_key(RenderOptions *options, bool in_camera, const char *key, con
   const OptionId id = render_option_find(key);
   const bool of_camera = id >= OPTION_EYE && id <= OPTION_ORTHO;
   bool done = false;
-  if (id == OPTION_COUNT || id == OPTION_SCENE || id == OPTION_SAVE_SCENE || of_camera != in_camera) {
+  if (id == OPTION_COUNT || !render_option_key(id) || of_camera != in_camera) {
     complain_of_key(options, in_camera, key, name);
   } else if (options->source >> id & 1) {
     cli_error("%s: key '%s' appears twice", options->scene, name);

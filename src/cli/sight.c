@@ -184,6 +184,9 @@ static double dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+static const char between_rays[] =
+    "the mesh falls between the rays of the pixels: it is too small, too thin, or too far away for them";
+
 /* Tells where the mesh lies, as seen from a camera whose rays don't meet it. */
 static const char *explain_camera(const Run *run) {
   const TetcastCamera *camera = &run->stage.camera;
@@ -207,7 +210,7 @@ static const char *explain_camera(const Run *run) {
     return "the mesh lies behind the camera, which looks away from it";
   if (past[0] || past[1] || past[2] || past[3])
     return "the camera looks past the mesh";
-  return "the mesh falls between the rays of the pixels: it is too small, too thin, or too far away for them";
+  return between_rays;
 }
 
 /* Where the transfer function has an extinction, in words; for free(). */
@@ -264,6 +267,15 @@ static bool is_stopped(const Probe *probe, const TetcastScene *scene) {
   const TetcastArray stop = picture_stop(run);
   return run->stop && largest_before(run, scene, &run->stage.camera, (int64_t)run->options.size[0],
                                      (int64_t)run->options.size[1], !probe->uniform, &stop) == 0;
+}
+
+/* Why nothing is seen of parts over ranks, as far as one rank can tell alone, without small pictures. */
+static char *explain_parts(const Run *run, const Look *look) {
+  const char *camera = explain_camera(run);
+  if (strcmp(camera, between_rays))
+    return cli_duplicate(camera);
+  return look->most_alpha > 0 ? cli_print("alpha is %.2g at most", look->most_alpha)
+                              : cli_duplicate("no ray meets anything that has an extinction");
 }
 
 static char *explain_blank(const Probe *probe, const Look *look) {
@@ -416,6 +428,12 @@ char *sight_fault(const Run *run) {
   const bool surfaces = render_options_surfaces(&run->options);       /* which may well be opaque */
   const bool solid = !data && !projected && !surfaces && look.seen && !look.translucent;
   const double *bounds = run->stage.info.bounds;
+  if (run->stage.others) {
+    char *reason = blank ? explain_parts(run, &look) : NULL;
+    char *fault = reason ? cli_print("the picture shows nothing: %s", reason) : NULL;
+    free(reason);
+    return fault;
+  }
   Probe probe = {.run = run};
   for (int k = 0; k < 3; k++)
     probe.size = hypot(probe.size, bounds[2 * k + 1] - bounds[2 * k]);

@@ -126,9 +126,14 @@ static int read_field(Stage *stage, const RenderOptions *options, const int64_t 
   memcpy(desc.stretch, options->stretch, sizeof desc.stretch);
   desc.sources = options->matrix != NULL;
   desc.only = stage->rows.second ? NULL : only_array(stage, options);
-  const char *path = options->input;
+  const char *path = stage->path ? stage->path : options->input;
   int64_t file = 0;
-  if (options->inputs) {
+  if (stage->path) { /* which has been chosen by block and time */
+    desc.part = true;
+    desc.block = NULL;
+    desc.step = 0;
+    desc.time = NAN;
+  } else if (options->inputs) {
     if (!choose_file(options, step, desc.step, &file))
       return CLI_FAILED;
     path = options->inputs[file];
@@ -139,6 +144,8 @@ static int read_field(Stage *stage, const RenderOptions *options, const int64_t 
   }
   TetcastStatus status = vtk->dataset_read(stage->context, path, &desc, &stage->dataset);
   const char *label = NULL;
+  if (status == TETCAST_OK && stage->path && !vtk->dataset_cell_type(stage->dataset, 0, NULL, NULL))
+    return CLI_DONE; /* a part without cells */
   if (status == TETCAST_OK && !stage->array && !stage->uniform && !options->array && !render_options_direct(options))
     stage->uniform = matter_wanted(stage->dataset, &label);
   if (status == TETCAST_OK)
@@ -147,16 +154,22 @@ static int read_field(Stage *stage, const RenderOptions *options, const int64_t 
     if (!coefficients_read(stage->dataset, options, &stage->coefficients))
       return CLI_FAILED;
   } else if (status == TETCAST_OK && stage->uniform && !stage->array && !label) {
-    cli_warning("%s: has no arrays: drawn as uniform matter", path);
+    cli_warning("%s: has no arrays: drawn as uniform matter", options->input);
   } else if (status == TETCAST_OK) {
     if (label)
-      cli_warning("%s: has no arrays but labels: drawn as uniform matter in the colours of '%s'", path, label);
+      cli_warning("%s: has no arrays but labels: drawn as uniform matter in the colours of '%s'", options->input,
+                  label);
     const char *selector = stage->array ? stage->array : options->array ? options->array : label;
     char *hint = options->array ? guess_array(stage->dataset, options->array) : NULL;
-    cli_set_hint(hint);
+    const bool chosen = stage->path && stage->array; /* by another part, which has it */
+    cli_set_hint(chosen ? "; what it has is transparent" : hint);
+    cli_set_lenient(chosen);
     status = vtk->dataset_field(stage->dataset, selector, &stage->field, &array);
+    cli_set_lenient(false);
     cli_set_hint(NULL);
     free(hint);
+    if (chosen && status == TETCAST_ERROR_ARGUMENT)
+      return CLI_DONE;
     if (status == TETCAST_OK && !stage->array) {
       stage->array = cli_duplicate(array);
       if (!options->array)
@@ -185,7 +198,7 @@ static int read_dataset(Stage *stage, const RenderOptions *options, const int64_
     return code;
   const double start = cli_seconds();
   TetcastStatus status = cli_vtk()->dataset_mesh(stage->dataset, &stage->mesh);
-  if (status == TETCAST_OK && stage->uniform && !stage->array)
+  if (status == TETCAST_OK && stage->uniform && !stage->array && tetcast_mesh_tetrahedron_count(stage->mesh) > 0)
     status = matter_field(stage->context, stage->mesh, &stage->field);
   stage->read_seconds += cli_seconds() - start;
   return status == TETCAST_OK ? cli_verdict(CLI_DONE) : cli_failed(status);
@@ -260,6 +273,7 @@ static TetcastStatus create_volume(Stage *stage, const RenderOptions *options) {
   stage->fingerprint = fingerprint;
   TetcastVolumeDesc desc = tetcast_volume_desc_default();
   desc.traversal = (TetcastTraversal)options->traversal;
+  desc.bounds = stage->bounds;
   desc.progress = cli_progress("preparing");
   TetcastStatus status = tetcast_volume_create(stage->context, stage->mesh, &desc, &stage->volume);
   cli_progress_clear();
@@ -269,14 +283,12 @@ static TetcastStatus create_volume(Stage *stage, const RenderOptions *options) {
 /* Whether the transfer function is found from the distribution of values. */
 static bool is_designed(const Stage *stage, const RenderOptions *options) {
   int64_t knots = 2;
-  double range[2] = {0, 1};
-  if (stage->field && !stage->whole)
-    tetcast_field_range(stage->field, range, NULL);
-  if (range[0] == range[1]) /* there is nothing to tell apart */
+  if (render_options_direct(options) ||
+      (!stage->whole && stage->range[0] == stage->range[1])) /* there is nothing to tell apart */
     return false;
   if (stage->preset) /* a file's may state opacities, or just colours */
     tetcast_transfer_function_extinction(stage->preset, &knots);
-  if (render_options_direct(options) || stage->transfer_function || stage->uniform || knots > 2 ||
+  if (stage->transfer_function || stage->uniform || knots > 2 ||
       render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
     return false;
   const RangeKind kind = render_options_range(options);
@@ -286,10 +298,7 @@ static bool is_designed(const Stage *stage, const RenderOptions *options) {
 
 /* Whether the values have a logarithm, some of them at least. */
 static bool check_logarithm(const Stage *stage) {
-  double range[2];
-  tetcast_field_range(stage->field, range, NULL);
-  if (stage->whole)
-    memcpy(range, stage->whole, sizeof range);
+  const double *range = stage->whole ? stage->whole : stage->range;
   if (!(range[1] > 0))
     cli_error("--log: array %s has values from %g to %g, and only those above 0 have a logarithm", stage->array,
               range[0], range[1]);
@@ -304,21 +313,26 @@ DesignDesc stage_design_desc(const Stage *stage, const RenderOptions *options) {
   return (DesignDesc){.range = kind == RANGE_FIXED       ? options->range
                                : kind == RANGE_QUANTILES ? stage->quantiles
                                                          : NULL,
-                      .whole = stage->whole,
+                      .whole = stage->others ? stage->range : stage->whole,
+                      .statistics = stage->others ? stage->others->statistics : NULL,
+                      .user = stage->others ? stage->others->ranks : NULL,
                       .logarithmic = options->logarithmic,
                       .diverging = !stage->preset &&
                                    tetcast_preset_kind(render_options_preset(options)) == TETCAST_PRESET_DIVERGING,
                       .center = render_options_given(options, OPTION_CENTRE) ? &options->centre : NULL};
 }
 
-/* Finds the transfer function but for its colours, while the field is there. */
-static TetcastStatus find_design(Stage *stage, const RenderOptions *options) {
-  if (options->logarithmic && render_options_range(options) != RANGE_FIXED && !check_logarithm(stage))
-    return TETCAST_ERROR_DATA;
-  if (!is_designed(stage, options))
-    return TETCAST_OK;
+/* Finds the values at shares of the volume, and the transfer function but for its colours, while the field is there. */
+static TetcastStatus find_design(Stage *stage, const RenderOptions *options, bool designed) {
+  const StageOthers *others = stage->others;
+  TetcastStatus status = TETCAST_OK;
+  if (render_options_range(options) == RANGE_QUANTILES)
+    status = others ? others->quantiles(others->ranks, stage->range, options->range, 2, stage->quantiles)
+                    : tetcast_statistics_quantiles(stage->context, stage->mesh, stage->field, options->range, 2,
+                                                   stage->quantiles);
+  if (status != TETCAST_OK || !designed)
+    return status;
   const DesignDesc desc = stage_design_desc(stage, options);
-  stage->designed = true;
   return design_find(stage->context, stage->mesh, stage->field, &desc, &stage->design);
 }
 
@@ -334,7 +348,10 @@ TetcastStatus stage_shade_design(const Stage *stage, const RenderOptions *option
                                  const char *preset, TetcastTransferFunction **transfer_function) {
   const RenderOptions nothing = render_options_default(COMMAND_RENDER);
   TetcastCamera first;
-  TetcastTransferFunction *map = NULL;
+  TetcastTransferFunction *map = NULL, *shape = NULL;
+  const StageOthers *others = stage->others;
+  if (others && !others->first) /* which knows the design */
+    return others->scale(others->ranks, NULL, NULL, transfer_function);
   view_complete(&nothing, stage->info.bounds, &first);
   TetcastStatus status = TETCAST_OK;
   if (preset)
@@ -342,13 +359,21 @@ TetcastStatus stage_shade_design(const Stage *stage, const RenderOptions *option
   else if (!stage->preset)
     status = create_map(stage, options, design, &map);
   if (status == TETCAST_OK)
-    status = design_shade(stage->context, stage->scene, design, &first, map ? map : stage->preset, transfer_function);
+    status = design_shape(stage->context, design, map ? map : stage->preset, &shape);
+  if (others) /* whatever the status is, as they wait */
+    status = others->scale(others->ranks, shape, &first, transfer_function);
+  else if (status == TETCAST_OK)
+    status = tetcast_scene_scale_transfer_function(stage->scene, shape, &first, 0.5, transfer_function);
   tetcast_transfer_function_destroy(&map);
+  tetcast_transfer_function_destroy(&shape);
   return status;
 }
 
 TetcastStatus stage_preset(const Stage *stage, const RenderOptions *options, const double range[2],
                            TetcastTransferFunction **transfer_function) {
+  const StageOthers *others = stage->others;
+  if (others)
+    return others->fit(others->ranks, stage->preset, render_options_preset(options), range, transfer_function);
   return stage->preset
              ? tetcast_scene_fit_transfer_function(stage->scene, stage->preset, range[0], range[1], transfer_function)
              : tetcast_scene_create_preset(stage->scene, render_options_preset(options), range[0], range[1],
@@ -370,6 +395,16 @@ static TetcastStatus make_transfer_function(Stage *stage, const RenderOptions *o
   return status;
 }
 
+/* Gives a scene the stage's transfer function, and its surfaces. */
+static TetcastStatus show(const Stage *stage, const RenderOptions *options, TetcastScene *scene) {
+  TetcastStatus status = TETCAST_OK;
+  if (stage->rows.count == 0) /* rows the scene has by now */
+    status = render_options_surfaces_alone(options)
+                 ? surfaces_set_colors(stage->context, scene, stage->transfer_function)
+                 : tetcast_scene_set_transfer_function(scene, stage->transfer_function);
+  return status == TETCAST_OK ? surfaces_set(scene, options, stage->transfer_function, stage->range) : status;
+}
+
 static TetcastStatus set_transfer_function(Stage *stage, const RenderOptions *options, const double *range) {
   TetcastStatus status = TETCAST_OK;
   if (!stage->transfer_function) {
@@ -383,46 +418,54 @@ static TetcastStatus set_transfer_function(Stage *stage, const RenderOptions *op
     status = stage->designed ? stage_shade_design(stage, options, &stage->design, NULL, &stage->transfer_function)
                              : make_transfer_function(stage, options, range);
   }
-  if (status == TETCAST_OK && stage->rows.count == 0) /* rows the scene has by now */
-    status = render_options_surfaces_alone(options)
-                 ? surfaces_set_colors(stage->context, stage->scene, stage->transfer_function)
-                 : tetcast_scene_set_transfer_function(stage->scene, stage->transfer_function);
-  if (status == TETCAST_OK)
-    status = surfaces_set(stage->scene, options, stage->transfer_function, stage->range);
+  TetcastScene *scene = stage->scene;
+  for (int i = 0; status == TETCAST_OK; i++) {
+    if (stage->others)
+      scene = stage->others->scene(stage->others->ranks, i);
+    if (!scene || (i > 0 && !stage->others))
+      break;
+    status = show(stage, options, scene);
+  }
   return status;
 }
 
-int stage_prepare(Stage *stage, const RenderOptions *options) {
-  const double start = cli_seconds();
-  if (render_options_given(options, OPTION_ISOSURFACE) && tetcast_field_association(stage->field) == TETCAST_CELL) {
+int stage_check_field(const Stage *stage, const RenderOptions *options) {
+  const bool of_cells = stage->field && tetcast_field_association(stage->field) == TETCAST_CELL;
+  const char *array = stage->array ? stage->array : "of the mesh";
+  if (render_options_given(options, OPTION_ISOSURFACE) && of_cells)
     cli_error("--isosurface: the array %s has a value for each cell; --cell-to-point makes one for points of it",
-              stage->array ? stage->array : "of the mesh");
-    return CLI_FAILED;
-  }
-  if (stage->rows.count > 0 && tetcast_field_association(stage->field) == TETCAST_CELL) {
+              array);
+  else if (stage->rows.count > 0 && of_cells)
     cli_error(
         "--transfer: one with rows needs an array of points, and %s has a value for each cell; --cell-to-point makes "
         "one for points of it",
         stage->array ? stage->array : "the mesh's");
-    return CLI_FAILED;
-  }
-  if (render_options_lit(options) && tetcast_field_association(stage->field) == TETCAST_CELL) {
+  else if (render_options_lit(options) && of_cells)
     cli_error("--shade volume: the array %s has a value for each cell, so no gradient; --cell-to-point makes one for "
               "points of it",
-              stage->array ? stage->array : "of the mesh");
-    return CLI_FAILED;
-  }
-  if (options->labels.count > 0 && !(stage->uniform && stage->array)) {
+              array);
+  else if (options->labels.count > 0 && !(stage->uniform && stage->array))
     cli_error("--label: the values of %s are not numbers of materials or blocks: whole ones of cells, at most 256",
               stage->array ? stage->array : "the mesh");
-    return CLI_FAILED;
-  }
-  cli_interrupt_hold(true);
+  else
+    return CLI_DONE;
+  return CLI_FAILED;
+}
+
+/* The extinction of what has labels, and these; of a part, these alone. */
+static TetcastStatus measure_matter(Stage *stage) {
+  if (!stage->bounds)
+    return matter_measure(stage->context, stage->volume, stage->mesh, stage->field, &stage->matter);
+  matter_collect(stage->field, &stage->matter);
+  return TETCAST_OK;
+}
+
+TetcastStatus stage_prepare_scene(Stage *stage, const RenderOptions *options) {
   TetcastStatus status = create_volume(stage, options);
   if (status == TETCAST_OK && !stage->scene)
     status = tetcast_scene_create(stage->context, stage->volume, &stage->scene);
   if (status == TETCAST_OK && stage->uniform && stage->array)
-    status = matter_measure(stage->context, stage->volume, stage->mesh, stage->field, &stage->matter);
+    status = measure_matter(stage);
   if (status == TETCAST_OK)
     status = stage->field ? tetcast_scene_set_field(stage->scene, stage->field)
                           : coefficients_set(stage->scene, options, &stage->coefficients);
@@ -432,24 +475,48 @@ int stage_prepare(Stage *stage, const RenderOptions *options) {
     status = tetcast_scene_set_blend(stage->scene, render_options_blend(options));
   if (status == TETCAST_OK)
     status = clip_scene(stage->scene, options);
-  if (status == TETCAST_OK && stage->field && render_options_range(options) == RANGE_QUANTILES)
-    status =
-        tetcast_statistics_quantiles(stage->context, stage->mesh, stage->field, options->range, 2, stage->quantiles);
-  if (status == TETCAST_OK && stage->field)
-    status = find_design(stage, options);
+  return status;
+}
+
+int stage_complete(Stage *stage, const RenderOptions *options) {
+  if (!render_options_direct(options) && options->logarithmic && render_options_range(options) != RANGE_FIXED &&
+      !check_logarithm(stage))
+    return CLI_FAILED;
+  const bool designed = is_designed(stage, options);
+  stage->designed = stage->designed || designed;
+  TetcastStatus status = TETCAST_OK;
+  const StageOthers *others = stage->others;
+  if (!render_options_direct(options) && (!others || others->first))
+    status = find_design(stage, options, designed);
+  int code = status == TETCAST_OK ? CLI_DONE : cli_failed(status);
+  if (others)
+    code = others->meet(others->ranks, code);
+  if (code != CLI_DONE)
+    return code;
+  if (stage->nonfinite > 0)
+    cli_warning("array %s: %lld values are NaN or infinite; the cells they touch are transparent", stage->array,
+                (long long)stage->nonfinite);
+  if (view_complete(options, stage->info.bounds, &stage->camera))
+    return cli_verdict(CLI_DONE);
+  return options->scene ? CLI_FAILED : CLI_USAGE; /* as for a camera that is wrong by itself */
+}
+
+int stage_prepare(Stage *stage, const RenderOptions *options) {
+  const double start = cli_seconds();
+  int code = stage_check_field(stage, options);
+  if (code != CLI_DONE)
+    return code;
+  cli_interrupt_hold(true);
+  const TetcastStatus status = stage_prepare_scene(stage, options);
   if (status != TETCAST_OK)
     return cli_failed(status);
   tetcast_volume_info(stage->volume, &stage->info);
   stage->nonfinite = 0;
   if (stage->field)
     tetcast_field_range(stage->field, stage->range, &stage->nonfinite);
-  if (stage->nonfinite > 0)
-    cli_warning("array %s: %lld values are NaN or infinite; the cells they touch are transparent", stage->array,
-                (long long)stage->nonfinite);
+  code = stage_complete(stage, options);
   stage->prepare_seconds = cli_seconds() - start;
-  if (view_complete(options, stage->info.bounds, &stage->camera))
-    return cli_verdict(CLI_DONE);
-  return options->scene ? CLI_FAILED : CLI_USAGE; /* as for a camera that is wrong by itself */
+  return code;
 }
 
 int stage_shade(Stage *stage, const RenderOptions *options, const double range[2]) {

@@ -12,11 +12,31 @@
 #include "render_options.h"
 #include "transfer_file.h"
 
+/* Where this process has only parts of the mesh, what it asks other processes for, or does for all of its parts. */
+typedef struct StageOthers {
+  struct Ranks *ranks; /* `user` of each of these */
+  bool first;          /* this process asks, the others answer */
+  TetcastStatus (*statistics)(void *user, const TetcastStatisticsDesc *desc, TetcastStatistics **statistics);
+  /* The values at shares of the volume, which are in `range`. */
+  TetcastStatus (*quantiles)(void *user, const double range[2], const double *shares, int count, double *values);
+  /* Ends that: the first one comes here when it has no more to ask, with what has become of it, an exit code; the
+   * others answer until then. All return that code. */
+  int (*meet)(void *user, int code);
+  /* The transfer functions that one scene would make: scaled for a camera, or of a shape over [0, 1] (NULL: that of a
+   * preset) fitted to a range. All come here; those that are not first may pass NULL. */
+  TetcastStatus (*scale)(void *user, const TetcastTransferFunction *shape, const TetcastCamera *camera,
+                         TetcastTransferFunction **transfer_function);
+  TetcastStatus (*fit)(void *user, const TetcastTransferFunction *shape, const char *preset, const double range[2],
+                       TetcastTransferFunction **transfer_function);
+  /* Scene i = 0, 1, … of this process; NULL beyond the last. */
+  TetcastScene *(*scene)(void *user, int i);
+} StageOthers;
+
 typedef struct Stage {
   TetcastContext *context;
   TetcastDataset *dataset; /* this one and the next three exist only until stage_drop_dataset() */
   TetcastMesh *mesh;
-  TetcastField *field; /* NULL: coefficients instead */
+  TetcastField *field; /* NULL: coefficients instead; or none, of a part without cells or without the array */
   Coefficients coefficients;
   TetcastVolume *volume;
   TetcastVolumeInfo info;
@@ -41,6 +61,10 @@ typedef struct Stage {
   bool of_series;       /* the volume and the scene serve the next step as well, if it has the same mesh */
   uint64_t fingerprint; /* of the volume's mesh */
   const double *whole;  /* the range of all steps' values; NULL: each step's own */
+  /* for parts of a mesh */
+  const StageOthers *others; /* NULL: this process has all of the mesh */
+  const char *path;          /* of a part that is a file; NULL: the options' input */
+  const double *bounds;      /* of a part: those of the whole mesh; NULL: it is all there is */
 } Stage;
 
 /* Each step returns an exit code. The first is what can be known to fail before the mesh is read. */
@@ -62,6 +86,12 @@ int stage_read_values(Stage *stage, const RenderOptions *options, int64_t step, 
 /* Prepares the volume, with its field or the scene's coefficients, and completes the camera. Holds interruptions from
  * here on. */
 int stage_prepare(Stage *stage, const RenderOptions *options);
+
+/* What it consists of, for parts of a mesh. The first refuses what can't be drawn of such a field, the second prepares
+ * the volume and the scene; the third, with `info`, `range` and `nonfinite` of the whole at hand, does the rest. */
+int stage_check_field(const Stage *stage, const RenderOptions *options);
+TetcastStatus stage_prepare_scene(Stage *stage, const RenderOptions *options);
+int stage_complete(Stage *stage, const RenderOptions *options);
 
 /* Gives the scene its transfer function, if it has no coefficients; if there is none yet, for the range that the
  * options state, or `range`. */

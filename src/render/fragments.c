@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/parallel.h"
+#include "base/vec3.h"
 
 enum { GRAIN = 1 << 12, FEW = 16 };
 
@@ -64,10 +65,42 @@ void tc_fragments_sort(TetcastFragment *fragments, int64_t count) {
 
 /* ── rendering ── */
 
+/* Finds where the volume's bounds are in the picture, and two pixels around them, which is far more than rounding. A
+ * part of a mesh is most often to be seen in a part of the picture, and rays that miss it take time as well. */
+static void find_seen(const TcRender *render, double seen[2][2]) {
+  const TetcastVolume *volume = render->job.shell->volume;
+  const TcView *view = &render->job.view;
+  const double size[2] = {(double)render->job.width, (double)render->job.height};
+  double to[3][3], low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  tc_cross(view->up, view->forward, to[0]);
+  tc_cross(view->forward, view->right, to[1]);
+  tc_cross(view->right, view->up, to[2]);
+  const double scale = tc_dot(view->forward, to[2]);
+  for (int corner = 0; corner < 8; ++corner) {
+    double from_eye[3];
+    for (int k = 0; k < 3; ++k)
+      from_eye[k] = ldexp(volume->info.bounds[2 * k + (corner >> k & 1)], -volume->exponent) - view->eye[k];
+    const double depth = view->orthographic ? 1 : tc_dot(from_eye, to[2]) / scale;
+    for (int k = 0; k < 2; ++k) {
+      const double place = tc_dot(from_eye, to[k]) / scale / depth;
+      const double pixel = (k == 0 ? 1 + place : 1 - place) / 2 * size[k];
+      low[k] = fmin(low[k], depth > 0 ? pixel : -INFINITY); /* beside the eye or behind it: anywhere */
+      high[k] = fmax(high[k], depth > 0 ? pixel : INFINITY);
+    }
+  }
+  for (int k = 0; k < 2; ++k) {
+    seen[k][0] = low[k] - 2;
+    seen[k][1] = high[k] + 2;
+  }
+}
+
 bool tc_fragments_tile(const TcRender *render, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorking *working) {
   TcFragmentList *list = &working->worker.fragments;
   const int64_t before = list->count, columns = x1 - x0;
   const int exponent = render->job.shell->volume->exponent;
+  const double(*seen)[2] = (const double(*)[2])render->fragments->seen;
+  if ((double)x1 < seen[0][0] || (double)x0 > seen[0][1] || (double)y1 < seen[1][0] || (double)y0 > seen[1][1])
+    return true;
   if (!render->kernels->tile(&render->job, x0, y0, x1, y1, &working->worker, working->sums))
     return false;
   for (int64_t i = before; i < list->count; ++i) {
@@ -106,6 +139,7 @@ static bool sort_pixels(void *data, int64_t begin, int64_t end, int worker) {
 }
 
 void tc_fragments_lend(TcRender *render, int threads) {
+  find_seen(render, render->fragments->seen);
   const TetcastFragments *result = render->fragments->result;
   for (int i = 0; i < threads && i < result->list_count; ++i) {
     render->workers[i].worker.fragments = result->lists[i];

@@ -34,6 +34,8 @@ struct Contents {
   int64_t step = 0;
   int64_t surfaces = 0;            // the number of parts left out as they have no volume
   std::vector<UnreadArray> unread; // arrays of the file that the pieces don't have
+  std::vector<std::string> *files =
+      nullptr; // where the files that are listed go, which are not read then; null: they are read
 };
 
 // One file being read, perhaps on behalf of another that lists it.
@@ -64,8 +66,8 @@ int64_t choose_step(const std::string &path, const TetcastDatasetDesc &desc, con
 // Turns a structured grid into hexahedra, with its arrays. Null for flat grids and other kinds of dataset.
 Grid to_hexahedra(const std::string &place, vtkDataSet *dataset);
 
-// Puts the pieces together, which are consumed. A lone piece without ghosts stays as it is. Arrays of the wrong length
-// are noted as unread.
+// Puts the pieces together, which are consumed. A lone piece without ghosts stays as it is, unless its points have to
+// be sorted. Arrays of the wrong length are noted as unread. Null for a part (TetcastDatasetDesc) without volume.
 Grid unite(const Reading &reading, std::vector<Piece> *pieces, TetcastDatasetPieces *counts,
            std::vector<UnreadArray> *unread);
 

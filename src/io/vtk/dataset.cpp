@@ -143,7 +143,7 @@ static Contents read_pieces_of(const Reading &reading) {
     fail(TETCAST_ERROR_ARGUMENT, "%s: has no block '%s' with a volume; %s", path, block,
          list.empty() ? "it is not of blocks" : list.c_str());
   }
-  if (contents.pieces.empty()) {
+  if (contents.pieces.empty() && !reading.desc->part) {
     fail(TETCAST_ERROR_DATA, "%s: %s", path,
          contents.surfaces > 0 ? "holds no volume, only surfaces or flat grids" : "holds no cells");
   }
@@ -217,7 +217,14 @@ static void read_dataset(TetcastContext *context, const char *path, const Tetcas
   dataset->unread = std::move(contents.unread);
   if (!desc.only || std::string(desc.only) == "block")
     number_blocks(&contents.pieces);
-  const Grid grid = unite(reading, &contents.pieces, &dataset->pieces, &dataset->unread);
+  const Grid grid =
+      contents.pieces.empty() ? nullptr : unite(reading, &contents.pieces, &dataset->pieces, &dataset->unread);
+  if (desc.part && (!grid || grid->GetNumberOfCells() == 0)) {
+    dataset->points = vtkSmartPointer<vtkDoubleArray>::New();
+    dataset->points->SetNumberOfComponents(3);
+    dataset->tetrahedra.view.type = TETCAST_TYPE_INT32;
+    return;
+  }
   const int64_t points = grid->GetNumberOfPoints(), cells = grid->GetNumberOfCells();
   const TetcastDatasetPieces &pieces = dataset->pieces;
   if (cells == 0 && pieces.nonfinite_cells > 0) {
@@ -294,6 +301,28 @@ TetcastStatus tetcast_dataset_read(TetcastContext *context, const char *path, co
     auto result = std::make_unique<TetcastDataset>();
     read_dataset(context, path, all, result.get());
     *dataset = result.release();
+  });
+}
+
+TetcastStatus tetcast_dataset_parts(TetcastContext *context, const char *path, const TetcastDatasetDesc *desc,
+                                    TetcastDatasetPart *part, void *user) {
+  const FloatingPoint guard;
+  if (!context || !path || !part) {
+    return tetcast_context_error(context, TETCAST_ERROR_ARGUMENT,
+                                 "tetcast_dataset_parts: context, path and part must not be NULL");
+  }
+  const TetcastDatasetDesc all = desc ? *desc : tetcast_dataset_desc_default();
+  if (all.cookie != desc_cookie)
+    return tetcast_context_error(
+        context, TETCAST_ERROR_ARGUMENT,
+        "tetcast_dataset_parts: the description was not made by tetcast_dataset_desc_default()");
+  return fence(context, path, [&] {
+    std::vector<std::string> files;
+    Contents contents;
+    contents.files = &files;
+    read_contents({context, &all, path, "", 0}, &contents);
+    for (const std::string &file : files)
+      part(user, file.c_str(), file_size(file.c_str()));
   });
 }
 

@@ -4,6 +4,8 @@
 
 #include <cstring>
 
+#include <unistd.h>
+
 #include "common.hpp"
 #include "files.hpp"
 #include "plugin.hpp"
@@ -61,6 +63,11 @@ bool is_one_block(const std::string &kind) {
   return xml || kind.compare(0, 4, "vtk ") == 0;
 }
 
+// Returns whether what this function reads are lists of other files.
+bool reads_lists(void (*read)(const tcv::Reading &reading, tcv::Contents *contents)) {
+  return read == tcv::read_pieces || read == tcv::read_blocks || read == tcv::read_pvd || read == tcv::read_series;
+}
+
 bool available(const char *plugin) {
   return !plugin || tcv::plugin_exists(plugin);
 }
@@ -79,7 +86,11 @@ void read_contents(const Reading &reading, Contents *contents) {
       extensions += (extensions.empty() ? "" : " ") + std::string(format.extensions);
     if (kind.empty() ? !one_of(path, format.extensions) : kind != format.kind)
       continue;
-    return format.read(reading, contents);
+    if (!contents->files || reads_lists(format.read))
+      return format.read(reading, contents);
+    if (reading.depth > 0)
+      contents->files->push_back(reading.path);
+    return;
   }
   refuse(path, kind, "a volume mesh", extensions.c_str());
 }
@@ -87,6 +98,10 @@ void read_contents(const Reading &reading, Contents *contents) {
 void read_part(const Reading &of, const std::string &path, const std::string &block, Contents *contents) {
   if (of.depth >= 8)
     fail(TETCAST_ERROR_DATA, "%s: is listed by a file that lists a file …, eight times over", path.c_str());
+  if (contents->files && access(path.c_str(), R_OK) != 0) {
+    contents->files->push_back(path); // Whoever reads it will notice.
+    return;
+  }
   try {
     const std::string kind = file_kind(file_head(path.c_str()));
     const bool wanted = block_wanted(block, of.desc->block);

@@ -23,6 +23,7 @@
 #include <vtkUnsignedCharArray.h>
 
 #include "attributes.hpp"
+#include "cells.hpp"
 #include "common.hpp"
 #include "contents.hpp"
 #include "points.hpp"
@@ -112,6 +113,16 @@ bool has_volume(vtkUnstructuredGrid *grid) {
     const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
     if (!cell || cell->GetCellDimension() == 3)
       return true; // VTK has no such cell, and it is refused later.
+  }
+  return false;
+}
+
+// Returns whether a grid has cells other than tetrahedra.
+bool needs_cuts(vtkUnstructuredGrid *grid) {
+  vtkUnsignedCharArray *types = grid->GetCellTypesArray();
+  for (int64_t i = 0; types && i < types->GetNumberOfValues(); ++i) {
+    if (types->GetValue(i) != VTK_TETRA && tcv::is_volume(types->GetValue(i)))
+      return true;
   }
   return false;
 }
@@ -253,12 +264,17 @@ Grid unite(const Reading &reading, std::vector<Piece> *pieces, TetcastDatasetPie
       check_piece(piece);
   }
   const auto useless = [&](const Piece &piece) { return !has_volume(piece.grid); };
-  if (!lone && !std::all_of(pieces->begin(), pieces->end(), useless)) {
+  const bool part = reading.desc->part;
+  if (part || (!lone && !std::all_of(pieces->begin(), pieces->end(), useless))) {
     const auto end = std::remove_if(pieces->begin(), pieces->end(), useless);
     counts->surfaces += std::distance(end, pieces->end());
     pieces->erase(end, pieces->end());
   }
   counts->pieces = static_cast<int64_t>(pieces->size());
+  if (pieces->empty())
+    return nullptr;
+  const bool sorted =
+      part && std::any_of(pieces->begin(), pieces->end(), [](const Piece &piece) { return needs_cuts(piece.grid); });
 
   std::vector<PieceMap> maps(pieces->size());
   for (size_t p = 0; p < maps.size(); ++p) {
@@ -276,11 +292,13 @@ Grid unite(const Reading &reading, std::vector<Piece> *pieces, TetcastDatasetPie
       counts->nonfinite_points += maps[p].nonfinite_points;
   }
   if (maps.size() == 1 && counts->ghost_cells == 0 && counts->nonfinite_points == 0 &&
-      reading.desc->merge_tolerance < 0)
+      reading.desc->merge_tolerance < 0 && !sorted)
     return (*pieces)[0].grid;
 
   auto grid = Grid::New();
   grid->SetPoints(merge_points(*pieces, reading.desc->merge_tolerance, &maps, &counts->merged_points));
+  if (sorted)
+    sort_points(grid->GetPoints(), &maps);
   set_cells(*pieces, maps, grid->GetNumberOfPoints(), grid);
   Differences differences;
   join_arrays(reading, *pieces, maps, grid, &differences, unread);

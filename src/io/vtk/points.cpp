@@ -5,6 +5,7 @@
 #include <climits>
 #include <cmath>
 #include <cstring>
+#include <tuple>
 
 #include <vtkCellArray.h>
 #include <vtkDoubleArray.h>
@@ -221,6 +222,27 @@ vtkSmartPointer<vtkPoints> merge_as(const std::vector<tcv::Piece> &pieces, int64
   return points;
 }
 
+// Sorts points and returns where each has gone. Points with the same coordinates stay in their order.
+template <typename T> std::vector<int64_t> sort_values(T *values, int64_t count) {
+  struct Point {
+    T x[3];
+    int64_t number;
+  };
+  std::vector<Point> order(static_cast<size_t>(count));
+  for (int64_t i = 0; i < count; ++i)
+    order[static_cast<size_t>(i)] = {{values[3 * i], values[3 * i + 1], values[3 * i + 2]}, i};
+  std::sort(order.begin(), order.end(), [](const Point &a, const Point &b) {
+    return std::tie(a.x[0], a.x[1], a.x[2], a.number) < std::tie(b.x[0], b.x[1], b.x[2], b.number);
+  });
+  std::vector<int64_t> place(static_cast<size_t>(count));
+  for (int64_t i = 0; i < count; ++i) {
+    const Point &point = order[static_cast<size_t>(i)];
+    place[static_cast<size_t>(point.number)] = i;
+    std::copy(point.x, point.x + 3, values + 3 * i);
+  }
+  return place;
+}
+
 } // namespace
 
 namespace tcv {
@@ -278,6 +300,21 @@ vtkSmartPointer<vtkPoints> merge_points(const std::vector<Piece> &pieces, double
   }
   return single ? merge_as<vtkFloatArray>(pieces, limit, tolerance, maps, merged)
                 : merge_as<vtkDoubleArray>(pieces, limit, tolerance, maps, merged);
+}
+
+void sort_points(vtkPoints *points, std::vector<PieceMap> *maps) {
+  vtkDataArray *values = points->GetData();
+  std::vector<int64_t> place; // of each point, in the new order
+  if (auto *singles = vtkFloatArray::FastDownCast(values))
+    place = sort_values(singles->GetPointer(0), values->GetNumberOfTuples());
+  else
+    place = sort_values(vtkDoubleArray::FastDownCast(values)->GetPointer(0), values->GetNumberOfTuples());
+  for (PieceMap &map : *maps) {
+    if (map.repeats)
+      continue; // It shares what the piece before has.
+    for (int64_t &to : *map.to)
+      to = to < 0 ? to : place[static_cast<size_t>(to)];
+  }
 }
 
 } // namespace tcv

@@ -28,6 +28,10 @@ void drop_nonfinite(vtkUnstructuredGrid *grid, PieceMap *map);
 vtkSmartPointer<vtkPoints> merge_points(const std::vector<Piece> &pieces, double tolerance, std::vector<PieceMap> *maps,
                                         int64_t *merged);
 
+// Puts the points of the whole in the order of their coordinates, x first, and changes `to` of all pieces accordingly.
+// So what goes by the order of points is the same in all files that have them.
+void sort_points(vtkPoints *points, std::vector<PieceMap> *maps);
+
 } // namespace tcv
 
 #endif
