@@ -75,8 +75,16 @@ static bool load(const char *soname, const char *purpose, const Symbol *symbols,
   return true;
 }
 
+static const CliVtk *other_source;
+
+void cli_set_source(const CliVtk *source) {
+  other_source = source;
+}
+
 const CliVtk *cli_vtk(void) {
   static CliVtk vtk;
+  if (other_source)
+    return other_source;
   return vtk.dataset_read || load(SONAME("vtk"), "reading and writing meshes", vtk_symbols, &vtk) ? &vtk : NULL;
 }
 

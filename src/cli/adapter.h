@@ -54,6 +54,7 @@
   X(TetcastStatus, image_read_depth, (TetcastContext *, const char *, int64_t, int64_t, double *))
 
 #define CLI_MPI_FUNCTIONS(X)                                                                                           \
+  X(TetcastStatus, mpi_create, (TetcastContext *, int, TetcastMpi **))                                                 \
   X(TetcastStatus, mpi_create_world, (TetcastContext *, TetcastMpi **))                                                \
   X(void, mpi_destroy, (TetcastMpi **))                                                                                \
   X(int, mpi_rank, (const TetcastMpi *))                                                                               \
@@ -97,6 +98,10 @@ const CliVtk *cli_vtk(void);
 const CliTetgen *cli_tetgen(void);
 const CliImage *cli_image(void);
 const CliMpi *cli_mpi(void);
+
+/* Puts another source of datasets in the place of VTK's adapter (NULL: nothing any more): the functions of `source` are
+ * what cli_vtk() has from here on. A source need not have those that write files. */
+void cli_set_source(const CliVtk *source);
 
 /* Writes float pixels [height][width][4], red, green, blue and alpha, premultiplied, as an image. */
 TetcastStatus cli_write_pixels(TetcastContext *context, const char *path, float *pixels, int64_t width, int64_t height,

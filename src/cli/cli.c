@@ -15,10 +15,8 @@
 
 char *cli_print_list(const char *format, va_list list) {
   char *text = NULL;
-  if (vasprintf(&text, format, list) < 0) {
-    fputs("tetcast: error: out of memory\n", stderr);
-    exit(CLI_FAILED);
-  }
+  if (vasprintf(&text, format, list) < 0)
+    cli_out_of_memory();
   return text;
 }
 
@@ -145,10 +143,8 @@ int cli_parse_numbers(const char *text, char separator, int most, double *values
 
 void *cli_allocate(size_t size) {
   void *memory = malloc(size ? size : 1);
-  if (!memory) {
-    fputs("tetcast: error: out of memory\n", stderr);
-    exit(CLI_FAILED);
-  }
+  if (!memory)
+    cli_out_of_memory();
   return memory;
 }
 

@@ -55,6 +55,9 @@ void cli_set_lenient(bool lenient);
 /* While a thread holds them, messages of the others are kept, to be shown when it lets go. */
 void cli_messages_hold(bool hold);
 
+/* Lets the next error be shown though there was one: for a process that goes on after errors. */
+void cli_forget_errors(void);
+
 /* Puts "PLACE: " before the library's errors (NULL: nothing): for calls whose arguments came from a file. */
 void cli_set_place(const char *place);
 
@@ -95,7 +98,12 @@ bool cli_parse_number(const char *text, double *value);
  * more than `most`. */
 int cli_parse_numbers(const char *text, char separator, int most, double *values);
 
-/* malloc(), strdup() and asprintf() that end the process with a message when there is no memory. */
+/* Ends the process, or what stands for it where pictures are made inside another program (src/catalyst), with a
+ * message.
+ */
+void cli_out_of_memory(void) __attribute__((noreturn));
+
+/* malloc(), strdup() and asprintf() that end so when there is no memory. */
 void *cli_allocate(size_t size);
 char *cli_duplicate(const char *text);
 

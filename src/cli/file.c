@@ -226,10 +226,8 @@ CliText *cli_text_begin(void) {
   CliText *text = cli_allocate(sizeof *text);
   *text = (CliText){.file = NULL};
   text->file = open_memstream(&text->memory, &text->size);
-  if (!text->file) {
-    cli_error("out of memory");
-    exit(CLI_FAILED);
-  }
+  if (!text->file)
+    cli_out_of_memory();
   return text;
 }
 

@@ -88,10 +88,8 @@ static void put(FILE *file, const json_t *value, int indent) {
     fprintf(file, "\n%*s]", indent, "");
   } else {
     char *text = json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(17));
-    if (!text) {
-      cli_error("out of memory");
-      exit(CLI_FAILED);
-    }
+    if (!text)
+      cli_out_of_memory();
     fputs(text, file);
     free(text);
   }

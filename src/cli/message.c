@@ -72,11 +72,21 @@ void cli_set_lenient(bool lenient) {
 }
 
 void cli_warn_once(void) {
+  flockfile(stderr);
   messages.once = true;
+  while (messages.count > 0)
+    free(messages.warnings[--messages.count]);
+  funlockfile(stderr);
 }
 
 bool cli_quiet(void) {
   return messages.quiet;
+}
+
+void cli_forget_errors(void) {
+  flockfile(stderr);
+  messages.failed = messages.refused = false;
+  funlockfile(stderr);
 }
 
 void cli_set_place(const char *place) {

@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -36,6 +37,11 @@ static void handle(int signal_number) {
   atomic_store(&caught, signal_number); /* before looking: another thread may be about to let go */
   if (atomic_load(&held) == 0)
     end(signal_number);
+}
+
+void cli_out_of_memory(void) {
+  fputs("tetcast: error: out of memory\n", stderr);
+  exit(CLI_FAILED);
 }
 
 void cli_interrupt_catch(void) {

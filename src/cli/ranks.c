@@ -187,16 +187,7 @@ int ranks_threads(void) {
   return neighbours > 1 && processors > neighbours ? processors / neighbours : neighbours > 1 ? 1 : 0;
 }
 
-int ranks_begin(Stage *stage, const RenderOptions *options, int code) {
-  if (!options->mpi || !stage->context)
-    return code;
-  const CliMpi *mpi = cli_mpi();
-  if (!mpi)
-    return CLI_FAILED;
-  TetcastMpi *world = NULL;
-  const TetcastStatus status = mpi->mpi_create_world(stage->context, &world);
-  if (status != TETCAST_OK)
-    return cli_failed(status);
+static int begin(Stage *stage, const CliMpi *mpi, TetcastMpi *world, int code) {
   Ranks *ranks = cli_allocate(sizeof *ranks);
   *ranks = (Ranks){.context = stage->context,
                    .mpi = mpi,
@@ -216,23 +207,71 @@ int ranks_begin(Stage *stage, const RenderOptions *options, int code) {
   return ranks_agree(stage, code);
 }
 
-void ranks_end(Stage *stage) {
+int ranks_begin(Stage *stage, const RenderOptions *options, int code) {
+  if (!options->mpi || !stage->context)
+    return code;
+  const CliMpi *mpi = cli_mpi();
+  TetcastMpi *world = NULL;
+  if (!mpi)
+    return CLI_FAILED;
+  const TetcastStatus status = mpi->mpi_create_world(stage->context, &world);
+  return status == TETCAST_OK ? begin(stage, mpi, world, code) : cli_failed(status);
+}
+
+int ranks_join(Stage *stage, int communicator) {
+  const CliMpi *mpi = cli_mpi();
+  TetcastMpi *world = NULL;
+  if (!mpi)
+    return CLI_FAILED;
+  const TetcastStatus status = mpi->mpi_create(stage->context, communicator, &world);
+  return status == TETCAST_OK ? begin(stage, mpi, world, CLI_DONE) : cli_failed(status);
+}
+
+int ranks_size(const Stage *stage) {
+  return stage->others ? ranks_of(stage)->size : 1;
+}
+
+int ranks_share_number(const Stage *stage, int64_t *number) {
+  const TetcastStatus status = stage->others ? broadcast(ranks_of(stage), 0, number, sizeof *number) : TETCAST_OK;
+  return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
+}
+
+void ranks_drop(Stage *stage) {
   Ranks *ranks = ranks_of(stage);
   if (!ranks)
     return;
-  cli_interrupt_hold(true); /* for good: the first rank that has gone makes mpirun end the others */
   for (int i = 0; i < ranks->count; i++) {
     Stage *part = &ranks->parts[i];
     tetcast_scene_destroy(&part->scene);
+    if (i == 0 && stage->of_series && part->volume) { /* which serves the next step, if it has the same mesh */
+      tetcast_volume_destroy(&ranks->kept);
+      ranks->kept = part->volume;
+      ranks->kept_fingerprint = part->fingerprint;
+      part->volume = NULL;
+    }
     tetcast_volume_destroy(&part->volume);
     stage_drop_dataset(part);
     matter_release(&part->matter);
     free(part->array);
     free((char *)part->path);
   }
-  ranks->mpi->mpi_destroy(&ranks->world);
   free(ranks->parts);
   free(ranks->scenes);
+  ranks->parts = NULL;
+  ranks->scenes = NULL;
+  ranks->count = ranks->scene_count = 0;
+  tetcast_scene_destroy(&stage->scene); /* what stands in for the whole */
+  tetcast_volume_destroy(&stage->volume);
+}
+
+void ranks_end(Stage *stage) {
+  Ranks *ranks = ranks_of(stage);
+  if (!ranks)
+    return;
+  cli_interrupt_hold(true); /* for good: the first rank that has gone makes mpirun end the others */
+  ranks_drop(stage);
+  tetcast_volume_destroy(&ranks->kept);
+  ranks->mpi->mpi_destroy(&ranks->world);
   stage->others = NULL;
   free(ranks);
 }
@@ -353,6 +392,7 @@ static int choose(Stage *stage, const RenderOptions *options, const FileList *li
       if (found[0] == CLI_DONE && has_cells(part)) {
         found[1] = true;
         found[2] = stage->uniform = part->uniform;
+        free(stage->array);
         stage->array = part->array ? cli_duplicate(part->array) : NULL;
       }
     }

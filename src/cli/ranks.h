@@ -30,6 +30,18 @@ int ranks_threads(void);
 /* Starts MPI, if --mpi is given. `code` is what came before: its agreed value is returned. */
 int ranks_begin(Stage *stage, const RenderOptions *options, int code);
 
+/* The same for the processes of a program that has started MPI: those of a communicator, as MPI_Comm_c2f() has it. An
+ * exit code. What follows is for such a program alone, which makes one picture after the other. */
+int ranks_join(Stage *stage, int communicator);
+int ranks_size(const Stage *stage);
+
+/* Rank 0's number becomes that of all. An exit code. */
+int ranks_share_number(const Stage *stage, int64_t *number);
+
+/* After a picture: what has been read and prepared is freed, but for the volume of the first part, which serves the
+ * next step if that has the same mesh. Without ranks: nothing. */
+void ranks_drop(Stage *stage);
+
 /* Ends MPI and frees the parts. Without ranks: nothing. */
 void ranks_end(Stage *stage);
 

@@ -49,7 +49,13 @@ Stage *ranks_add(Stage *stage) {
   *part = (Stage){.context = stage->context,
                   .rows = stage->rows,
                   .array = stage->array ? cli_duplicate(stage->array) : NULL,
-                  .uniform = stage->uniform};
+                  .uniform = stage->uniform,
+                  .of_series = stage->of_series};
+  if (ranks_of(stage)->count == 1) {
+    part->volume = ranks_of(stage)->kept;
+    part->fingerprint = ranks_of(stage)->kept_fingerprint;
+    ranks_of(stage)->kept = NULL;
+  }
   return part;
 }
 

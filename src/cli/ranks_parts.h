@@ -17,7 +17,9 @@ struct Ranks {
   int count;
   TetcastScene **scenes; /* [scene_count], of the parts that have one */
   int scene_count;
-  double bounds[6];      /* of the whole */
+  double bounds[6];    /* of the whole */
+  TetcastVolume *kept; /* of the step before, for the first part; NULL: none */
+  uint64_t kept_fingerprint;
   TetcastMpiStats stats; /* of the last picture */
 };
 

@@ -15,6 +15,7 @@
 #include "preset_list.h"
 #include "progress.h"
 #include "ranks.h"
+#include "render.h"
 #include "render_parse.h"
 #include "scene_file.h"
 #include "series.h"
@@ -27,6 +28,13 @@ static void tidy(const RenderOptions *options) {
   for (int i = 0; i < 3; i++)
     if (outputs[i])
       cli_file_tidy(outputs[i]);
+}
+
+void render_choose_background(RenderOptions *options) {
+  if (render_options_given(options, OPTION_EMISSION) && !render_options_given(options, OPTION_BACKGROUND))
+    options->background[0] = options->background[1] = options->background[2] = 0; /* radiance is shown on black */
+  else if (!render_options_given(options, OPTION_BACKGROUND) && render_options_decorated(options))
+    render_options_soften(options);
 }
 
 /* Checks everything that can be checked before the mesh is read and without the image library. */
@@ -57,10 +65,7 @@ static int check(Run *run) {
   if (ranks_first(&run->stage) && ((options->stats && !cli_file_check(options->stats)) ||
                                    (options->save_scene && !cli_file_check(options->save_scene))))
     return CLI_FAILED;
-  if (render_options_given(options, OPTION_EMISSION) && !render_options_given(options, OPTION_BACKGROUND))
-    options->background[0] = options->background[1] = options->background[2] = 0; /* radiance is shown on black */
-  else if (!render_options_given(options, OPTION_BACKGROUND) && render_options_decorated(options))
-    render_options_soften(options);
+  render_choose_background(options);
   if (options->source >> OPTION_BACKGROUND & 1 && render_options_floating(options)) /* on the command line, that is */
     cli_warning("--background has no effect: floating-point pixels hold the picture without background");
   if (options->source >> OPTION_EXPOSURE & 1 && render_options_floating(options))
@@ -80,8 +85,7 @@ static void set_background(Run *run) {
   }
 }
 
-/* Checks whether the picture can be written to its place and in its format. */
-static int check_image(Run *run) {
+int render_check_image(Run *run) {
   run->image = cli_image();
   if (!run->image)
     return CLI_FAILED;
@@ -120,7 +124,7 @@ static void *check_image_aside(void *argument) {
   Run *run = argument;
   cli_messages_hold(true);
   sem_post(&run->image_begun);
-  const int code = check_image(run);
+  const int code = render_check_image(run);
   if (code != CLI_DONE)
     _exit(outcome(code));
   cli_messages_hold(false);
@@ -131,12 +135,12 @@ static void *check_image_aside(void *argument) {
  * done at the same time. */
 static int begin_image(Run *run) {
   if (run->stage.others) /* all have to know of it before they read */
-    return ranks_first(&run->stage) ? check_image(run) : CLI_DONE;
+    return ranks_first(&run->stage) ? render_check_image(run) : CLI_DONE;
   if (!cli_vtk()) /* before the thread begins: only one library is loaded at a time */
     return CLI_FAILED;
   sem_init(&run->image_begun, 0, 0);
   if (pthread_create(&run->image_thread, NULL, check_image_aside, run) != 0)
-    return check_image(run);
+    return render_check_image(run);
   run->image_pending = true;
   while (sem_wait(&run->image_begun) != 0) /* a signal */
     continue;
@@ -216,6 +220,17 @@ static int perform(Run *run) {
   return code;
 }
 
+void render_release(Run *run) {
+  picture_await_image(run);
+  tetcast_frame_destroy(&run->frame);
+  ranks_end(&run->stage);
+  stage_release(&run->stage);
+  deep_release(&run->deep);
+  free(run->stop);
+  free(run->stats.render_seconds);
+  render_options_release(&run->options);
+}
+
 int tetcast_cli_render(int argc, char **argv) {
   Run run = {.options = render_options_default(COMMAND_RENDER)};
   ranks_foresee(argc, argv);
@@ -226,14 +241,8 @@ int tetcast_cli_render(int argc, char **argv) {
     code = run.options.list_presets ? preset_list(&run.options) : perform(&run);
   }
   picture_await_image(&run);
-  tetcast_frame_destroy(&run.frame);
   if (code != CLI_DONE)
     ranks_wait(&run.stage);
-  ranks_end(&run.stage);
-  stage_release(&run.stage);
-  deep_release(&run.deep);
-  free(run.stop);
-  free(run.stats.render_seconds);
-  render_options_release(&run.options);
+  render_release(&run);
   return outcome(code);
 }

@@ -123,8 +123,10 @@ typedef struct RenderOptions {
       *sheet, *plots, *rays, *matrix;
   char **inputs; /* [input_count] of several files, the steps of a series; input is the first. NULL: one file */
   int input_count;
-  json_t *transfer_object; /* of a scene file; instead of transfer */
-  TetcastHalfSpace *clip;  /* [clip_count] */
+  json_t *transfer_object;    /* of a scene file; instead of transfer */
+  const json_t *scene_object; /* what the scene file holds, or a scene that `scene` is only a name of; NULL: not read */
+  const char *scene_folder;   /* what paths in it are relative to; NULL: the folder of the file */
+  TetcastHalfSpace *clip;     /* [clip_count] */
   int clip_count, clip_capacity;
   double clip_box[6]; /* x0, x1, y0, … */
   double stretch[3], exposure, take;

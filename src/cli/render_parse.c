@@ -153,8 +153,7 @@ static const char *find_alone(const RenderOptions *options) {
              : NULL;
 }
 
-/* What is wrong with options that are in order one by one (for free()), NULL: nothing. */
-static char *find_fault(const RenderOptions *options) {
+char *render_options_fault(const RenderOptions *options) {
   const char *view = view_fault(options);
   if (!view)
     view = find_mixture(options);
@@ -419,7 +418,7 @@ int render_options_parse(RenderOptions *options, int argc, char **argv) {
     return result;
   if (result < 0)
     result = check_use(options);
-  char *fault = result < 0 ? find_fault(options) : NULL;
+  char *fault = result < 0 ? render_options_fault(options) : NULL;
   if (fault && options->scene) {
     cli_error("%s", fault);
     result = CLI_FAILED;

@@ -13,10 +13,15 @@
 #include "json.h"
 #include "preset_name.h"
 
+/* What paths in the scene are relative to, for free(). */
+static char *folder_of(const RenderOptions *options) {
+  return options->scene_folder ? cli_duplicate(options->scene_folder) : cli_path_folder(options->scene);
+}
+
 /* Several files are the steps of a series. NULL, or what is wrong. */
 static const char *set_inputs(RenderOptions *options, const json_t *list) {
   const int count = (int)json_array_size(list);
-  char *folder = cli_path_folder(options->scene), **paths = cli_allocate(sizeof *paths * (size_t)count);
+  char *folder = folder_of(options), **paths = cli_allocate(sizeof *paths * (size_t)count);
   int named = 0;
   for (; named < count; named++) {
     const char *name = json_string_value(json_array_get(list, (size_t)named));
@@ -38,7 +43,7 @@ static bool set_value(RenderOptions *options, OptionId id, const char *key, cons
   char *path = NULL;
   const bool is_file = value.text && id == OPTION_PRESET && preset_name_is_file(value.text);
   if (value.text && *value.text && (is_file || render_option_is_path(id))) {
-    char *folder = cli_path_folder(options->scene);
+    char *folder = folder_of(options);
     value.text = path = cli_path_join(folder, value.text);
     free(folder);
   } else if (json_is_boolean(json) && render_option_is_flag(id)) {
@@ -118,7 +123,7 @@ static bool set_camera(RenderOptions *options, json_t *camera) {
 }
 
 bool scene_file_read(RenderOptions *options) {
-  json_t *root = cli_json_read(options->scene);
+  json_t *root = options->scene_object ? json_deep_copy(options->scene_object) : cli_json_read(options->scene);
   if (!root)
     return false;
   bool done = true;

@@ -9,7 +9,7 @@
 
 #include "render_options.h"
 
-/* Sets what the file options->scene states. False after a message. */
+/* Sets what options->scene_object states, or if there is none, the file options->scene. False after a message. */
 bool scene_file_read(RenderOptions *options);
 
 /* What a file is that was given as a mesh, if it is a scene or a transfer function, and by which option it is to be

@@ -80,8 +80,7 @@ bool series_wanted(const RenderOptions *options) {
   return is_all(options) || has_number(options) || render_options_range(options) == RANGE_SERIES;
 }
 
-/* The name of a step's picture, for free(). */
-static char *name_of(const RenderOptions *options, int64_t step) {
+char *series_name(const RenderOptions *options, int64_t step) {
   const char *output = options->output;
   size_t at;
   int width;
@@ -139,7 +138,7 @@ static int check_names(const Series *series) {
   FileSet files = {0};
   fileset_add_options(&files, options);
   for (int64_t i = series->begin; i < series->end; i++) {
-    char *path = name_of(options, i);
+    char *path = series_name(options, i);
     fileset_add(&files, "the picture", path, true);
     free(path);
   }
@@ -340,7 +339,7 @@ static int render_step(Series *series, int64_t step, const char *path, bool kept
 
 /* Size of the picture that a former run has made of the step, 0: none, or it is not to be kept. */
 static off_t size_kept(const Series *series, int64_t step) {
-  char *path = name_of(&series->run->options, step);
+  char *path = series_name(&series->run->options, step);
   struct stat status;
   const bool kept = series->run->options.resume && stat(path, &status) == 0 && S_ISREG(status.st_mode);
   free(path);
@@ -358,7 +357,7 @@ static int check_kept(Series *series) {
   if (size_kept(series, largest) == 0)
     return CLI_DONE;
   series->todo++;
-  char *path = name_of(&series->run->options, largest);
+  char *path = series_name(&series->run->options, largest);
   const int code = render_step(series, largest, path, true);
   free(path);
   return code;
@@ -367,7 +366,7 @@ static int check_kept(Series *series) {
 static int render_steps(Series *series) {
   int code = check_kept(series);
   for (int64_t i = series->begin; i < series->end && code == CLI_DONE; i++) {
-    char *path = name_of(&series->run->options, i);
+    char *path = series_name(&series->run->options, i);
     const bool kept = size_kept(series, i) > 0;
     series->shown = series->shown || kept;
     if (!kept)

@@ -257,15 +257,18 @@ static uint64_t mix(uint64_t hash, const TetcastArray *array, size_t row) {
   return hash ^ (uint64_t)array->count;
 }
 
-static uint64_t fingerprint_of(const TetcastMesh *mesh) {
+/* Of the mesh, and of the bounds that its volume is made with. */
+static uint64_t fingerprint_of(const TetcastMesh *mesh, const double *bounds) {
   const TetcastArray vertices = tetcast_mesh_vertices(mesh), tetrahedra = tetcast_mesh_tetrahedra(mesh);
   const bool wide = tetrahedra.type == TETCAST_TYPE_INT64 || tetrahedra.type == TETCAST_TYPE_UINT64;
-  const uint64_t hash = mix(1, &vertices, 3 * (vertices.type == TETCAST_TYPE_FLOAT64 ? sizeof(double) : sizeof(float)));
+  const TetcastArray box = {.data = bounds, .count = bounds ? 1 : 0};
+  uint64_t hash = mix(1, &box, 6 * sizeof(double));
+  hash = mix(hash, &vertices, 3 * (vertices.type == TETCAST_TYPE_FLOAT64 ? sizeof(double) : sizeof(float)));
   return mix(hash, &tetrahedra, 4 * (wide ? sizeof(int64_t) : sizeof(int32_t)));
 }
 
 static TetcastStatus create_volume(Stage *stage, const RenderOptions *options) {
-  const uint64_t fingerprint = stage->of_series ? fingerprint_of(stage->mesh) : 0;
+  const uint64_t fingerprint = stage->of_series ? fingerprint_of(stage->mesh, stage->bounds) : 0;
   if (stage->volume && stage->fingerprint == fingerprint)
     return TETCAST_OK;
   tetcast_scene_destroy(&stage->scene);

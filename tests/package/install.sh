@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # install.sh SOURCE BUILD WORK: installs BUILD, moves the installed tree, and builds and runs tests/examples against it, with
-# CMake and with pkg-config. Environment: CC, FORTRAN (a compiler, or empty), ADAPTERS (separated by spaces).
+# CMake and with pkg-config. Environment: CC, FORTRAN (a compiler, or empty), ADAPTERS (separated by spaces), CATALYST (empty: not built).
 set -eu
 source=$1 build=$2 work=$3
 rm -rf "$work"
@@ -128,6 +128,14 @@ case " $ADAPTERS " in
     ;;
 esac
 unset LD_LIBRARY_PATH
+
+# What simulations load by name finds its libraries where the tree now lies.
+if [ -n "${CATALYST-}" ]; then
+  plugin=$(find "$prefix" -path '*/catalyst/libcatalyst-tetcast.so')
+  [ -n "$plugin" ] || fail "libcatalyst-tetcast.so is not installed in a folder catalyst of the libraries"
+  ldd "$plugin" | grep -F "=> $prefix/" | grep -q 'libtetcast[.]so' || fail "$plugin does not find libtetcast: $(ldd "$plugin")"
+  [ -n "$(find "$prefix" -name 'tetcast-catalyst.7*')" ] || fail "the manual page tetcast-catalyst.7 is not installed"
+fi
 
 # 3. The command finds its libraries where the tree now lies.
 if [ -x "$prefix/bin/tetcast" ]; then

@@ -79,12 +79,13 @@ done
 # shellcheck disable=SC2086
 check tetcast.c $above
 check cli
+check catalyst cli # what makes pictures there
 check mpi
 for adapter in src/io/*/; do
   check "io/$(basename "$adapter")" io/floating.hpp
 done
 for folder in src/*/; do
-  case " $core io cli fortran mpi " in
+  case " $core io cli catalyst fortran mpi " in
     *" $(basename "$folder") "*) ;;
     *) complain "$folder is not one of the folders that are tested" ;;
   esac
@@ -148,8 +149,8 @@ only 'embree|rtcore' src/volume/embree.c
 only 'vtk[A-Z]' src/io/vtk/
 only 'tetgen[.]h' src/io/tetgen/
 only 'OpenImageIO' src/io/openimageio/
+only 'jansson' src/cli/ src/catalyst/settings.c
 only 'mpi[.]h' src/mpi/
-only 'jansson' src/cli/
 
 # That the test sees anything at all.
 for line in 'src/render/picture.c src/mesh/adjacency.h src/volume/volume.h' 'src/volume/embree.c embree' 'src/optics/transfer.c src/base/base.h'; do
