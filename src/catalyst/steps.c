@@ -155,10 +155,8 @@ static int prepare(const ConduitNode *data) {
   RenderOptions *options = &steps.run.options;
   free(options->input);
   options->input = cli_duplicate(steps.place);
-  if (!render_options_given(options, OPTION_TRANSFER)) {
-    tetcast_transfer_function_destroy(&stage->transfer_function); /* each step has its own, as a picture of it alone */
-    stage->designed = false;
-  }
+  if (!render_options_given(options, OPTION_TRANSFER)) /* each step has its own, as a picture of it alone */
+    tetcast_transfer_function_destroy(&stage->transfer_function);
   source_set(data, steps.place, steps.settings.topology, ranks_size(stage));
   int code = ranks_read(stage, options);
   if (code == CLI_DONE)

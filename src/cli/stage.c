@@ -486,7 +486,7 @@ int stage_complete(Stage *stage, const RenderOptions *options) {
       !check_logarithm(stage))
     return CLI_FAILED;
   const bool designed = is_designed(stage, options);
-  stage->designed = stage->designed || designed;
+  stage->designed = designed || (stage->designed && stage->transfer_function); /* which an earlier step has left */
   TetcastStatus status = TETCAST_OK;
   const StageOthers *others = stage->others;
   if (!render_options_direct(options) && (!others || others->first))

@@ -49,6 +49,11 @@ for i in 0 1 2; do same s.000$i.png series.000$i.png; done
 same step.0000.png a.png 'a range of its own'
 accept render b.vtu $small -o b.png
 same step.0001.png b.png 'a range of its own'
+scalar='7 7 7 7 7 7 7 7' vtu even_1.vtu "$five_tetrahedra" 10
+cp a.vtu even_0.vtu
+accept render even_0.vtu even_1.vtu --array s --range step $small -o even.##.png
+accept render even_1.vtu --array s $small -o even.png
+same even.01.png even.png 'one value, after a step of many'
 differ s.0000.png a.png 'range'
 same s.0001.png b.png 'the largest step decides'
 accept render s.pvd --time all --preset inferno --range 0,60 $small -o inferno.png
