@@ -135,7 +135,7 @@ TC_INLINE void advance(const int which, const unsigned on, const TcGround *given
       uint32_t reached;
       active[i] = p->active;
       lost[i] = tc_packet_cross(on, &ground, p, &q[i], &crossed[i], &reached);
-      ended[i] = tc_packet_reach(on, &ground, p, reached);
+      ended[i] = tc_packet_reach(on, &ground, p, reached, &crossed[i]);
     }
     EACH_PACKET {
       TcPacket *p = &packet[i].walk;

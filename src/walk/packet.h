@@ -117,6 +117,38 @@ TC_INLINE TcVec tc_packet_shift(const TcGround *ground, const TcPacket *p) {
   return tc_madd(beside, p->at.tilt.z, tc_set((TcReal)ground->resolution.depth));
 }
 
+/* a before b in an order that follows from where they are alone. */
+TC_INLINE TcMask tc_point_before(const TcLanePoints *a, const TcLanePoints *b) {
+  const TcMask nearer = tc_lt(a->d, b->d), below = tc_lt(a->y, b->y), level = tc_and(tc_eq(a->y, b->y), nearer);
+  return tc_or(tc_lt(a->x, b->x), tc_and(tc_eq(a->x, b->x), tc_or(below, level)));
+}
+
+/* With TC_PARTS: the lanes of `mask` are at the shell, which may be a face to another part of the mesh. There the
+ * face's vertices have other numbers and come in another order. So the edges are computed anew, and depth and scalar
+ * from sums, in an order that both parts share: they have the same bits, and what lies exactly in the face is in one of
+ * the parts.
+ */
+TC_NOINLINE void tc_packet_settle(const unsigned on, const TcGround *ground, TcPacket *p, TcMask mask) {
+  static const int pairs[3][2] = {{0, 1}, {1, 2}, {0, 1}};
+  TcLanePoints v[3] = {p->v[0], p->v[1], p->v[2]};
+  for (int i = 0; i < 3; ++i) {
+    TcLanePoints *a = &v[pairs[i][0]], *b = &v[pairs[i][1]];
+    const TcMask swap = tc_point_before(b, a);
+    const TcLanePoints first = tc_select_points(swap, *b, *a);
+    *b = tc_select_points(swap, *a, *b);
+    *a = first;
+  }
+  TcVec e[3];
+  tc_edges_of(mask, v, e);
+  for (int k = 0; k < 3; ++k)
+    e[k] = tc_abs(e[k]);
+  TcCrossing at;
+  tc_cross_face(on & TC_ASSOCIATIONS, ground, &p->rays, v, e, &at);
+  p->at.z = tc_select(mask, at.z, p->at.z);
+  if (!(on & TC_ASSOCIATIONS))
+    p->at.s = tc_select(mask, at.s, p->at.s);
+}
+
 /* The lanes of `starting` set out from the shell's faces that their hits name. */
 TC_NOINLINE void tc_packet_set_out(const unsigned on, const TcGround *ground, TcPacket *p) {
   uint32_t id[3][TC_LANES] = {{0}};
@@ -143,6 +175,8 @@ TC_NOINLINE void tc_packet_set_out(const unsigned on, const TcGround *ground, Tc
   for (int k = 0; k < 3; ++k)
     p->weight[k] = tc_select(mask, weight[k], p->weight[k]);
   tc_cross_face(on, ground, &p->rays, p->v, p->weight, &p->at);
+  if (on & TC_PARTS)
+    tc_packet_settle(on, ground, p, mask);
   if (on & TC_BOUND)
     p->shift += tc_select(mask, tc_packet_shift(ground, p), tc_set(0));
 #if TC_SINGLE
@@ -298,7 +332,8 @@ TC_NOINLINE unsigned tc_packet_invisible(const TcShell *shell, const TcPacket *p
 
 /* A step's third part: lets the lanes that have reached the shell rest, and returns them; the others have their next
  * vertex fetched. */
-TC_INLINE unsigned tc_packet_reach(const unsigned on, const TcGround *ground, TcPacket *p, uint32_t reached) {
+TC_INLINE unsigned tc_packet_reach(const unsigned on, const TcGround *ground, TcPacket *p, uint32_t reached,
+                                   TcCrossed *crossed) {
   unsigned ended = 0;
   if (TC_UNLIKELY(ground->shell->visible != NULL)) {
     if (TC_UNLIKELY(tc_packet_ends(ground->shell, p, reached)))
@@ -311,6 +346,10 @@ TC_INLINE unsigned tc_packet_reach(const unsigned on, const TcGround *ground, Tc
       const int l = __builtin_ctz(lanes);
       p->exit_cell[l] = p->from[l];
       p->exit_face[l] = p->face[l];
+    }
+    if (on & TC_PARTS) {
+      tc_packet_settle(on, ground, p, tc_mask_of(ended));
+      crossed->s1 = on & TC_ASSOCIATIONS ? crossed->s1 : p->at.s;
     }
     if (on & TC_BOUND)
       p->shift += tc_select(tc_mask_of(ended), tc_packet_shift(ground, p), tc_set(0));
