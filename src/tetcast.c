@@ -602,3 +602,37 @@ TetcastStatus tetcast_frame_recolor(TetcastFrame *frame, const TetcastTransferFu
   tc_frame_recolor(frame, &transfer_function->pieces);
   return TETCAST_OK;
 }
+
+typedef struct FrameBytes {
+  const TetcastFrame *frame;
+  const double *background;
+  int channels;
+  unsigned char *bytes;
+  int64_t row_stride;
+} FrameBytes;
+
+static TetcastStatus frame_bytes(void *data) {
+  const FrameBytes *call = data;
+  tc_frame_bytes(call->frame, call->background, call->channels, call->bytes, call->row_stride);
+  return TETCAST_OK;
+}
+
+TetcastStatus tetcast_frame_bytes(const TetcastFrame *frame, const double background[4], int channels,
+                                  unsigned char *bytes, int64_t row_stride) {
+  TC_ENTRY;
+  if (!frame)
+    return TETCAST_ERROR_ARGUMENT;
+  TetcastContext *context = frame->context;
+  CHECK_GIVEN(context, background);
+  CHECK_GIVEN(context, bytes);
+  for (int k = 0; k < 4; ++k) {
+    if (!(background[k] >= 0 && background[k] <= 1))
+      return ARGUMENT(context, "background component %g is outside [0, 1]", background[k]);
+  }
+  if (channels != 3 && channels != 4)
+    return ARGUMENT(context, "a frame as bytes of %d channels: must be 3 or 4", channels);
+  const int64_t row = frame->width * channels;
+  if (row_stride != 0 && row_stride < row && row_stride > -row)
+    return ARGUMENT(context, "a row stride of %" PRId64 " bytes, but a row has %" PRId64, row_stride, row);
+  return tc_call(frame_bytes, &(FrameBytes){frame, background, channels, bytes, row_stride}, NULL);
+}

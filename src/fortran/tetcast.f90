@@ -954,6 +954,16 @@ module tetcast
       integer(c_int) :: status
     end function
 
+    ! `bytes` is c_loc() of the first of them.
+    function tetcast_frame_bytes(frame, background, channels, bytes, row_stride) result(status) bind(c)
+      import
+      type(c_ptr), value :: frame, bytes
+      real(c_double), intent(in) :: background(4)
+      integer(c_int), value :: channels
+      integer(c_int64_t), value :: row_stride
+      integer(c_int) :: status
+    end function
+
     ! scene.h: what is seen, and rendering it
     function tetcast_scene_create(context, volume, scene) result(status) bind(c)
       import
