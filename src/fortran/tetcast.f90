@@ -297,6 +297,7 @@ module tetcast
     integer(c_int) :: projection = 0
     real(c_double) :: fovy = 0
     real(c_double) :: height = 0
+    real(c_double) :: center(2) = 0
   end type
 
   ! What a clip keeps.

@@ -84,7 +84,7 @@ static void find_seen(const TcRender *render, double seen[2][2]) {
       from_eye[k] = ldexp(volume->info.bounds[2 * k + (corner >> k & 1)], -volume->exponent) - view->eye[k];
     const double depth = view->orthographic ? 1 : tc_dot(from_eye, to[2]) / scale;
     for (int k = 0; k < 2; ++k) {
-      const double place = tc_dot(from_eye, to[k]) / scale / depth;
+      const double place = tc_dot(from_eye, to[k]) / scale / depth - view->center[k];
       const double pixel = (k == 0 ? 1 + place : 1 - place) / 2 * size[k];
       low[k] = fmin(low[k], depth > 0 ? pixel : -INFINITY); /* beside the eye or behind it: anywhere */
       high[k] = fmax(high[k], depth > 0 ? pixel : INFINITY);
