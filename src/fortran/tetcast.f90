@@ -196,6 +196,9 @@ module tetcast
     type(TetcastArray) :: tetrahedra
     integer(c_int) :: ownership
     integer(c_int) :: index_base
+    type(TetcastArray) :: coordinates(3)
+    type(c_ptr) :: hidden
+    integer(c_int8_t) :: hidden_bits
   end type
 
   ! The health of a mesh.
@@ -662,6 +665,13 @@ module tetcast
       integer(c_int64_t), value :: i
       integer(c_int64_t), intent(out) :: indices(4)
     end subroutine
+
+    function tetcast_mesh_hides(mesh, i) result(answer) bind(c)
+      import
+      type(c_ptr), value :: mesh
+      integer(c_int64_t), value :: i
+      integer(c_int) :: answer
+    end function
 
     subroutine tetcast_mesh_bounds(mesh, bounds) bind(c)
       import
