@@ -113,6 +113,22 @@ static TetcastStatus check_array(TetcastContext *context, const TetcastArray *ar
   return TETCAST_OK;
 }
 
+/* Coordinates that come in three arrays. */
+static TetcastStatus check_coordinates(TetcastContext *context, const TetcastArray coordinates[3]) {
+  for (int k = 0; k < 3; ++k) {
+    const TetcastStatus status = check_array(context, &coordinates[k], "coordinates");
+    if (status)
+      return status;
+    if (coordinates[k].count != coordinates[0].count)
+      return ARGUMENT(context, "coordinates: %" PRId64 " in x, %" PRId64 " in %c", coordinates[0].count,
+                      coordinates[k].count, "xyz"[k]);
+    if (coordinates[k].count > 0 &&
+        (!tc_type_is_float(coordinates[k].type) || coordinates[k].type != coordinates[0].type))
+      return ARGUMENT(context, "coordinates must be float32 or float64, all three alike");
+  }
+  return TETCAST_OK;
+}
+
 TetcastMeshDesc tetcast_mesh_desc_default(void) {
   return (TetcastMeshDesc){.cookie = TC_COOKIE};
 }
@@ -134,6 +150,10 @@ TetcastStatus tetcast_mesh_create(TetcastContext *context, const TetcastMeshDesc
   CHECK_GIVEN(context, context);
   CHECK_DESC(context, desc);
   TetcastStatus status = check_array(context, &desc->vertices, "vertices");
+  if (!status)
+    status = check_coordinates(context, desc->coordinates);
+  if (!status && desc->vertices.count > 0 && desc->coordinates[0].count > 0)
+    return ARGUMENT(context, "a mesh with both vertices and coordinates");
   if (!status)
     status = check_array(context, &desc->tetrahedra, "tetrahedra");
   if (status)
@@ -180,6 +200,10 @@ void tetcast_mesh_vertex(const TetcastMesh *mesh, int64_t i, double position[3])
 void tetcast_mesh_tetrahedron(const TetcastMesh *mesh, int64_t i, int64_t indices[4]) {
   tc_mesh_tetrahedron(mesh, i, indices);
 }
+int tetcast_mesh_hides(const TetcastMesh *mesh, int64_t i) {
+  return tc_mesh_hides(mesh, i);
+}
+
 void tetcast_mesh_bounds(const TetcastMesh *mesh, double bounds[6]) {
   memcpy(bounds, mesh->bounds, sizeof mesh->bounds);
 }
@@ -601,4 +625,38 @@ TetcastStatus tetcast_frame_recolor(TetcastFrame *frame, const TetcastTransferFu
     return ARGUMENT(frame->context, "to colour a frame anew it must have the channel value");
   tc_frame_recolor(frame, &transfer_function->pieces);
   return TETCAST_OK;
+}
+
+typedef struct FrameBytes {
+  const TetcastFrame *frame;
+  const double *background;
+  int channels;
+  unsigned char *bytes;
+  int64_t row_stride;
+} FrameBytes;
+
+static TetcastStatus frame_bytes(void *data) {
+  const FrameBytes *call = data;
+  tc_frame_bytes(call->frame, call->background, call->channels, call->bytes, call->row_stride);
+  return TETCAST_OK;
+}
+
+TetcastStatus tetcast_frame_bytes(const TetcastFrame *frame, const double background[4], int channels,
+                                  unsigned char *bytes, int64_t row_stride) {
+  TC_ENTRY;
+  if (!frame)
+    return TETCAST_ERROR_ARGUMENT;
+  TetcastContext *context = frame->context;
+  CHECK_GIVEN(context, background);
+  CHECK_GIVEN(context, bytes);
+  for (int k = 0; k < 4; ++k) {
+    if (!(background[k] >= 0 && background[k] <= 1))
+      return ARGUMENT(context, "background component %g is outside [0, 1]", background[k]);
+  }
+  if (channels != 3 && channels != 4)
+    return ARGUMENT(context, "a frame as bytes of %d channels: must be 3 or 4", channels);
+  const int64_t row = frame->width * channels;
+  if (row_stride != 0 && row_stride < row && row_stride > -row)
+    return ARGUMENT(context, "a row stride of %" PRId64 " bytes, but a row has %" PRId64, row_stride, row);
+  return tc_call(frame_bytes, &(FrameBytes){frame, background, channels, bytes, row_stride}, NULL);
 }

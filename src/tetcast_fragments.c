@@ -25,19 +25,22 @@ TetcastFragmentList tetcast_fragments_list(const TetcastFragments *fragments) {
   return (TetcastFragmentList){fragments->data, fragments->count};
 }
 
-/* Whether the scene shows nothing but a field through a transfer function. */
+/* Whether a part of a mesh has what the scene shows by itself. */
 static TetcastStatus check_looks(const TetcastScene *scene, const TetcastRenderDesc *desc) {
   TetcastContext *context = scene->context;
-  const char *what = scene->coefficients                                   ? "coefficients"
-                     : scene->blend                                        ? "another blend mode than composite"
-                     : tc_scene_has_surfaces(scene)                        ? "surfaces"
-                     : tc_scene_is_lit(scene)                              ? "light in the volume"
-                     : scene->row_count > 0                                ? "a transfer function of two dimensions"
-                     : desc->integrator                                    ? "another integrator than the exact one"
-                     : desc->samples != 1                                  ? "several samples"
-                     : desc->adaptive_coarse                               ? "adaptive"
-                     : scene->volume->traversal != TETCAST_TRAVERSAL_SHELL ? "the traversal of faces"
-                                                                           : NULL;
+  const TcLighting *lighting = &scene->lighting;
+  const bool lit = lighting->surfaces && scene->isosurface_count > 0;
+  const char *what = scene->coefficients           ? "coefficients"
+                     : scene->blend                ? "another blend mode than composite"
+                     : scene->boundary.opacity > 0 ? "the boundary, which a part has of its own"
+                     : tc_scene_is_lit(scene)      ? "light in the volume"
+                     : lit && (lighting->shadows || lighting->occlusion_rays) ? "shadows"
+                     : lit && lighting->smooth                                ? "smooth normals"
+                     : desc->integrator                                       ? "another integrator than the exact one"
+                     : desc->samples != 1                                     ? "several samples"
+                     : desc->adaptive_coarse                                  ? "adaptive"
+                     : scene->volume->traversal != TETCAST_TRAVERSAL_SHELL    ? "the traversal of faces"
+                                                                              : NULL;
   return what ? ARGUMENT(context, "fragments: not possible with %s", what) : TETCAST_OK;
 }
 

@@ -362,6 +362,8 @@ static TetcastStatus check_camera(TetcastContext *context, const TetcastCamera *
       return ARGUMENT(context, "camera: a coordinate of eye, target or up is not finite");
     }
   }
+  if (!isfinite(camera->center[0]) || !isfinite(camera->center[1]))
+    return ARGUMENT(context, "camera: a center of %g, %g: must be finite", camera->center[0], camera->center[1]);
   if (camera->projection == TETCAST_PERSPECTIVE) {
     if (!(camera->fovy > 0 && camera->fovy < 180)) {
       return ARGUMENT(context, "camera: a vertical angle of %g degrees, must be in (0, 180)", camera->fovy);

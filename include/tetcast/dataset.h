@@ -213,9 +213,9 @@ TETCAST_API TetcastStatus tetcast_dataset_mesh(const TetcastDataset *dataset, Te
 TETCAST_API TetcastStatus tetcast_dataset_field(const TetcastDataset *dataset, const char *selector,
                                                 TetcastField **field, const char **name);
 
-/* Writes a mesh and its fields as .vtu (appended raw, zlib-compressed). names[i] names fields[i]. The file appears
- * whole or not at all. Fields must have as many values as the mesh has vertices or cells. count may be 0, names and
- * fields then NULL. */
+/* Writes a mesh and its fields as .vtu (appended raw, zlib-compressed). names[i] names fields[i]. Cells that the mesh
+ * hides are written with a mark in vtkGhostType, by which readers hide them. The file appears whole or not at all.
+ * Fields must have as many values as the mesh has vertices or cells. count may be 0, names and fields then NULL. */
 TETCAST_API TetcastStatus tetcast_dataset_write(TetcastContext *context, const char *path, const TetcastMesh *mesh,
                                                 int count, const char *const *names, const TetcastField *const *fields);
 

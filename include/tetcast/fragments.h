@@ -7,7 +7,7 @@
  *
  * Each part is a mesh, a volume (with TetcastVolumeDesc.bounds, the same for all) and a scene, in one process or in
  * several; a cell is in one part only. Every part renders fragments from the same camera, with the same transfer
- * function and instruction set; then tetcast_fragments_composite() makes the picture. */
+ * function, surfaces and instruction set; then tetcast_fragments_composite() makes the picture. */
 #ifndef TETCAST_FRAGMENTS_H
 #define TETCAST_FRAGMENTS_H
 
@@ -23,8 +23,10 @@
 extern "C" {
 #endif
 
-/* What a ray has between two places at which it is outside of the part, or of what is visible of it. It holds no
- * pointers, and may be sent to other processes as it is. */
+/* What a ray has between two places at which it is outside of the part, or of what is visible of it. The surfaces that
+ * it meets there are included, as nothing of another part comes between; a surface in a face that two parts share is in
+ * one of them. At such a face the places of both parts' fragments have the same bits. It holds no pointers, and may be
+ * sent to other processes as it is. */
 typedef struct TetcastFragment {
   /* Its pixel, row · width + column, rows from the top. */
   int64_t pixel;
@@ -34,7 +36,8 @@ typedef struct TetcastFragment {
   double begin;
   /* Where it ends, likewise. */
   double end;
-  /* ∫ κ dt, above 0; opacity is 1 − exp(−optical_depth). */
+  /* ∫ κ dt, and −ln(1 − opacity) of each surface, above 0; infinity with an opaque one. The fragment's opacity is 1 −
+   * exp(−optical_depth). */
   double optical_depth;
   /* Red, green, blue, premultiplied by its opacity. */
   double color[3];
@@ -63,12 +66,15 @@ TETCAST_API TetcastFragmentList tetcast_fragments_list(const TetcastFragments *f
 /* Renders a picture of width × height pixels, each in [1, 2^20], one ray each, to fragments, in place of those that
  * were there. Fragments of which nothing is seen are left out, and so is what lies behind an opaque part of a fragment.
  * `desc` and `stats` may be NULL; of `desc`, isa, stop, start, picture_height (`height` is the number of rows then) and
- * progress are used, and fragments are exact whatever the tolerance. The scene must have a field and a transfer
- * function and show nothing else: coefficients, surfaces, light in the volume, a transfer function of two dimensions,
- * another blend mode, another integrator, several samples, adaptive_coarse and TETCAST_TRAVERSAL_FACES are
- * TETCAST_ERROR_ARGUMENT. After an error or a cancelled call there are no fragments. With one instruction set,
- * fragments have the same bits for any number of threads. Calls with different `fragments` may run at the same time,
- * also on one scene. */
+ * progress are used, and fragments are exact whatever the tolerance. After an error or a cancelled call there are no
+ * fragments. With one instruction set, fragments have the same bits for any number of threads. Calls with different
+ * `fragments` may run at the same time, also on one scene.
+ *
+ * The scene may show what a cell shows by itself: a field through a transfer function of one or two dimensions,
+ * isosurfaces, slices. What follows from the cells around it, of which a part may not have all, is
+ * TETCAST_ERROR_ARGUMENT: the boundary, light in the volume, and on isosurfaces shadows, occlusion and smooth normals
+ * (TETCAST_NORMALS_FLAT are possible). So are coefficients, another blend mode, another integrator, several samples,
+ * adaptive_coarse and TETCAST_TRAVERSAL_FACES. */
 TETCAST_API TetcastStatus tetcast_scene_render_fragments(const TetcastScene *scene, const TetcastCamera *camera,
                                                          const TetcastRenderDesc *desc, int64_t width, int64_t height,
                                                          TetcastFragments *fragments, TetcastRenderStats *stats);
@@ -79,7 +85,7 @@ TETCAST_API TetcastStatus tetcast_scene_render_fragments(const TetcastScene *sce
  * then.
  *
  * `overlap`, if it isn't NULL, is the largest length over which a fragment of a pixel overlaps those before it, in the
- * mesh's unit. Where no cell is in two parts, and the mesh doesn't overlap itself, it is of the order of rounding.
+ * mesh's unit. Where no cell is in two parts, and the mesh doesn't overlap itself, it is 0 to rounding.
  * Cells in several parts, as ghosts that should have been left out, show up in it if a ray sees them. */
 TETCAST_API TetcastStatus tetcast_fragments_composite(TetcastContext *context, const TetcastFragmentList *lists,
                                                       int64_t count, TetcastFrame *frame, double *overlap);

@@ -148,6 +148,18 @@ TETCAST_API const void *tetcast_frame_channel(const TetcastFrame *frame, Tetcast
  * tetcast_scene_render() gives with that transfer function. */
 TETCAST_API TetcastStatus tetcast_frame_recolor(TetcastFrame *frame, const TetcastTransferFunction *transfer_function);
 
+/* Writes the picture over a background as 8-bit numbers, row 0 at the top, as windows and simple formats take them: a
+ * component v becomes ⌊255 v + ½⌋ of what v is within [0, 1]; NaN becomes 0. Values are taken as they are, as
+ * compositing takes them: colours of transfer functions are display values (sRGB), and no gamma is applied.
+ *
+ * `background` [4]: red, green, blue and alpha, each in [0, 1], not premultiplied. `channels`: 3, red, green, blue,
+ * where a translucent background itself lies over black; or 4, with alpha, by which colours are then not premultiplied.
+ * `bytes` is the first component of row 0, and `row_stride` how many bytes later the same of row 1 is: of magnitude
+ * width · channels at least, negative for a memory with its lowest row first; 0: width · channels. Other numbers are
+ * TETCAST_ERROR_ARGUMENT. The frame's context has the threads; calls may run at the same time. */
+TETCAST_API TetcastStatus tetcast_frame_bytes(const TetcastFrame *frame, const double background[4], int channels,
+                                              unsigned char *bytes, int64_t row_stride);
+
 #ifdef __cplusplus
 }
 #endif

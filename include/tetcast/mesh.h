@@ -19,17 +19,27 @@ typedef struct TetcastMesh TetcastMesh;
 typedef struct TetcastMeshDesc {
   /* Set by tetcast_mesh_desc_default(), so that a struct which was not made by it is told apart. */
   uint32_t cookie;
-  /* [n, 3] float32 or float64: the coordinates of the vertices, finite, in any unit of length. */
+  /* [n, 3] float32 or float64: the coordinates of the vertices, finite, in any unit of length. None: `coordinates` has
+   * them. */
   TetcastArray vertices;
   /* [m, 4] int32, uint32, int64 or uint64, each in [index_base, index_base + n): the vertices of each tetrahedron, in
    * any order. */
   TetcastArray tetrahedra;
-  /* Whether the two arrays are copied (the default) or borrowed. */
+  /* Whether the arrays are copied (the default) or borrowed. */
   TetcastOwnership ownership;
   /* The number that `tetrahedra` has for the first vertex: 0 (the default), or 1 as in Fortran. Arrays are borrowed
    * with either. What tetcast_mesh_create() says of vertices and tetrahedra counts both from there; all else in the
    * library counts from 0. */
   int index_base;
+  /* [n] each: x, y and z of the vertices in arrays apart, in place of `vertices`: all float32 or all float64, each with
+   * a stride of its own, copied or borrowed as the others. Default: none. */
+  TetcastArray coordinates[3];
+  /* [m] sets of bits, such as VTK's marks of ghost cells: cells with any of `hidden_bits` are left out of all that is
+   * made of the mesh: volumes, bounds, health, statistics. They keep their numbers, and their values in fields of cells
+   * and of corners. Copied or borrowed as the others. NULL (the default): no cell is hidden. */
+  const uint8_t *hidden;
+  /* The bits of `hidden` that hide a cell. Default: 0, none. */
+  uint8_t hidden_bits;
 } TetcastMeshDesc;
 
 /* Makes a desc of an empty mesh that copies its arrays. */
@@ -46,10 +56,11 @@ TETCAST_API void tetcast_mesh_destroy(TetcastMesh **mesh);
 /* The number of vertices n. */
 TETCAST_API int64_t tetcast_mesh_vertex_count(const TetcastMesh *mesh);
 
-/* The number of tetrahedra m. */
+/* The number of tetrahedra m, hidden ones included. */
 TETCAST_API int64_t tetcast_mesh_tetrahedron_count(const TetcastMesh *mesh);
 
-/* [n, 3]: the vertices, of the type they came in; valid while the mesh lives. */
+/* [n, 3]: the vertices, of the type they came in; valid while the mesh lives. Its data is NULL where coordinates came
+ * in arrays apart. */
 TETCAST_API TetcastArray tetcast_mesh_vertices(const TetcastMesh *mesh);
 
 /* [m, 4]: the tetrahedra, of the type they came in, counting vertices from tetcast_mesh_index_base(); valid while the
@@ -65,7 +76,11 @@ TETCAST_API void tetcast_mesh_vertex(const TetcastMesh *mesh, int64_t i, double 
 /* The vertices of tetrahedron i in [0, m), each in [0, n). */
 TETCAST_API void tetcast_mesh_tetrahedron(const TetcastMesh *mesh, int64_t i, int64_t indices[4]);
 
-/* Bounds of the vertices that tetrahedra use: xmin, xmax, ymin, ymax, zmin, zmax; all zero for a mesh without cells. */
+/* Not 0 if tetrahedron i in [0, m) is hidden. */
+TETCAST_API int tetcast_mesh_hides(const TetcastMesh *mesh, int64_t i);
+
+/* Bounds of the vertices that tetrahedra use, but for hidden ones: xmin, xmax, ymin, ymax, zmin, zmax; all zero for a
+ * mesh without cells. */
 TETCAST_API void tetcast_mesh_bounds(const TetcastMesh *mesh, double bounds[6]);
 
 /* The health of a mesh. None of what is counted here keeps it from being rendered. */

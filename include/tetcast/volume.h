@@ -82,7 +82,7 @@ typedef struct TetcastVolumeInfo {
   int64_t vertices;
   /* The number of tetrahedra that can be crossed: the mesh's without those left out. */
   int64_t tetrahedra;
-  /* The number of cells left out (tetcast_volume_create()). */
+  /* The number of cells left out (tetcast_volume_create()), and of those that the mesh hides. */
   int64_t left_out;
   /* The number of vertices that count as one place with another vertex (tetcast_volume_create()). */
   int64_t welded;

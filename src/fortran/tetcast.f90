@@ -196,6 +196,9 @@ module tetcast
     type(TetcastArray) :: tetrahedra
     integer(c_int) :: ownership
     integer(c_int) :: index_base
+    type(TetcastArray) :: coordinates(3)
+    type(c_ptr) :: hidden
+    integer(c_int8_t) :: hidden_bits
   end type
 
   ! The health of a mesh.
@@ -297,6 +300,7 @@ module tetcast
     integer(c_int) :: projection = 0
     real(c_double) :: fovy = 0
     real(c_double) :: height = 0
+    real(c_double) :: center(2) = 0
   end type
 
   ! What a clip keeps.
@@ -662,6 +666,13 @@ module tetcast
       integer(c_int64_t), intent(out) :: indices(4)
     end subroutine
 
+    function tetcast_mesh_hides(mesh, i) result(answer) bind(c)
+      import
+      type(c_ptr), value :: mesh
+      integer(c_int64_t), value :: i
+      integer(c_int) :: answer
+    end function
+
     subroutine tetcast_mesh_bounds(mesh, bounds) bind(c)
       import
       type(c_ptr), value :: mesh
@@ -951,6 +962,16 @@ module tetcast
     function tetcast_frame_recolor(frame, transfer_function) result(status) bind(c)
       import
       type(c_ptr), value :: frame, transfer_function
+      integer(c_int) :: status
+    end function
+
+    ! `bytes` is c_loc() of the first of them.
+    function tetcast_frame_bytes(frame, background, channels, bytes, row_stride) result(status) bind(c)
+      import
+      type(c_ptr), value :: frame, bytes
+      real(c_double), intent(in) :: background(4)
+      integer(c_int), value :: channels
+      integer(c_int64_t), value :: row_stride
       integer(c_int) :: status
     end function
 

@@ -38,17 +38,18 @@ typedef struct Build {
   uint32_t *source;
   TcCell *cells;
   int64_t *shell_begin; /* [pieces of GRAIN cells]: the first shell face */
-  atomic_llong collapsed, duplicates, boundary, nonmanifold;
+  atomic_llong hidden, collapsed, duplicates, boundary, nonmanifold;
   atomic_bool out_of_memory;
 } Build;
 
 /* ── cells in order ── */
 
-/* Renumbers cells and makes records of them by their smallest vertex. Cells with a vertex twice go to the end. */
+/* Renumbers cells and makes records of them by their smallest vertex. Hidden ones, and those with a vertex twice,
+ * go to the end. */
 static bool read_cells(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   Build *build = data;
-  int64_t collapsed = 0;
+  int64_t collapsed = 0, hidden = 0;
   for (int64_t i = begin; i < end; ++i) {
     uint32_t *v = build->unsorted[i];
     tc_mesh_cell(build->mesh, i, v);
@@ -57,10 +58,12 @@ static bool read_cells(void *data, int64_t begin, int64_t end, int worker) {
         v[k] = build->rank[v[k]];
     }
     tc_sort4(v);
-    const bool flat = (v[0] == v[1]) | (v[1] == v[2]) | (v[2] == v[3]);
-    collapsed += flat;
-    build->records[i] = tc_record(flat ? (uint32_t)build->vertex_count : v[0], (uint32_t)i);
+    const bool hides = tc_mesh_hides(build->mesh, i), flat = (v[0] == v[1]) | (v[1] == v[2]) | (v[2] == v[3]);
+    hidden += hides;
+    collapsed += flat & !hides;
+    build->records[i] = tc_record(flat | hides ? (uint32_t)build->vertex_count : v[0], (uint32_t)i);
   }
+  atomic_fetch_add(&build->hidden, hidden);
   atomic_fetch_add(&build->collapsed, collapsed);
   return true;
 }
@@ -418,7 +421,7 @@ static TetcastStatus sort_cells(Build *build, const TetcastProgress *progress) {
     status = sort_records(build, all, build->vertices);
   if (status)
     return status;
-  build->cell_count = all - atomic_load(&build->collapsed);
+  build->cell_count = all - atomic_load(&build->hidden) - atomic_load(&build->collapsed);
   if (!tc_allocate_array(context, (void **)&build->source, build->cell_count, sizeof *build->source, "cells")) {
     return TETCAST_ERROR_MEMORY;
   }
@@ -470,6 +473,7 @@ TetcastStatus tc_adjacency_build(const TetcastMesh *mesh, const uint32_t *rank, 
   result->cell_count = build.cell_count;
   result->cells = build.cells;
   result->source = build.source;
+  result->hidden = atomic_load(&build.hidden);
   result->collapsed = atomic_load(&build.collapsed);
   result->duplicates = atomic_load(&build.duplicates);
   result->boundary = atomic_load(&build.boundary);

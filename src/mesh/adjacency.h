@@ -27,6 +27,7 @@ typedef struct TcAdjacency {
   TcShellFace *shell;      /* [shell_count] */
   uint32_t (*vertices)[4]; /* [cell_count], ascending, if they were asked for */
   uint32_t *source;        /* [cell_count]: the mesh's cell */
+  int64_t hidden;          /* the number of cells that the mesh hides */
   int64_t collapsed;       /* the number of cells left out as they have a vertex twice */
   int64_t duplicates;      /* the number of cells left out as an earlier cell has the same four vertices */
   int64_t boundary;        /* the number of faces of one cell */

@@ -752,8 +752,9 @@ TetcastStatus tc_cells_cut(TetcastContext *context, const TetcastCellsDesc *desc
                     "%" PRId64 " cells of %" PRId64 " vertices: at most %d of each can be held", cutter.cell_count,
                     cutter.vertex_count, (int)TC_MAX_COUNT);
   }
-  cutter.mesh.vertices = desc->vertices;
-  cutter.mesh.vertices.stride = tc_array_stride(&desc->vertices, 3);
+  TetcastArray vertices = desc->vertices;
+  vertices.stride = tc_array_stride(&vertices, 3);
+  tc_mesh_set_vertices(&cutter.mesh, &vertices);
   cutter.offset_stride = tc_array_stride(&desc->offsets, 1);
   cutter.node_stride =
       tc_array_stride(&desc->connectivity, desc->offsets.count ? 1 : (int)tc_cell_nodes((unsigned)desc->type));

@@ -126,6 +126,8 @@ static TetcastStatus examine_vertices(TetcastContext *context, const TetcastMesh
     memset(used, 0, (size_t)n);
     for (int64_t i = 0; i < mesh->tetrahedra.count; ++i) {
       int64_t v[4];
+      if (tc_mesh_hides(mesh, i))
+        continue;
       tc_mesh_tetrahedron(mesh, i, v);
       for (int k = 0; k < 4; ++k)
         used[v[k]] = 1;
@@ -157,6 +159,8 @@ TetcastStatus tc_mesh_health(TetcastContext *context, const TetcastMesh *mesh, T
   const Scaled unit = scaled(mesh);
   for (int64_t i = 0; i < mesh->tetrahedra.count; ++i) {
     int64_t v[4];
+    if (tc_mesh_hides(mesh, i))
+      continue;
     tc_mesh_tetrahedron(mesh, i, v);
     const double volume = signed_volume(&unit, v);
     health->degenerate_cells += volume == 0;

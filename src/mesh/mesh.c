@@ -52,7 +52,8 @@ static bool check_tetrahedra(void *data, int64_t begin, int64_t end, int worker)
         found_bad(check, i);
         return true;
       }
-      atomic_store_explicit(&check->used[v[k] - mesh->index_base], 1, memory_order_relaxed);
+      if (!tc_mesh_hides(mesh, i))
+        atomic_store_explicit(&check->used[v[k] - mesh->index_base], 1, memory_order_relaxed);
     }
   }
   return true;
@@ -106,8 +107,8 @@ static void take_bounds(TetcastMesh *mesh, const Check *check) {
     }
   }
   for (int k = 0; k < 3; ++k) {
-    mesh->bounds[2 * k] = mesh->tetrahedra.count ? low[k] : 0;
-    mesh->bounds[2 * k + 1] = mesh->tetrahedra.count ? high[k] : 0;
+    mesh->bounds[2 * k] = low[k] <= high[k] ? low[k] : 0;
+    mesh->bounds[2 * k + 1] = low[k] <= high[k] ? high[k] : 0;
   }
 }
 
@@ -130,11 +131,47 @@ static TetcastStatus examine(TetcastContext *context, TetcastMesh *mesh) {
   return ok ? check_bounds(mesh) : report_tetrahedron(mesh, check.first_bad);
 }
 
+/* Keeps coordinates that come in one array. */
+static TetcastStatus keep_vertices(const TetcastMeshDesc *desc, TetcastMesh *mesh) {
+  const TetcastStatus status =
+      tc_array_keep(mesh->context, &desc->vertices, 3, desc->ownership, "vertices", &mesh->vertices, &mesh->memory[0]);
+  if (!status)
+    tc_mesh_set_vertices(mesh, &mesh->vertices);
+  return status;
+}
+
+/* Keeps coordinates that come in three. */
+static TetcastStatus keep_coordinates(const TetcastMeshDesc *desc, TetcastMesh *mesh) {
+  TetcastStatus status = TETCAST_OK;
+  for (int k = 0; !status && k < 3; ++k) {
+    status = tc_array_keep(mesh->context, &desc->coordinates[k], 1, desc->ownership, "coordinates",
+                           &mesh->coordinates[k], &mesh->memory[k]);
+  }
+  mesh->vertices = (TetcastArray){.type = desc->coordinates[0].type, .count = desc->coordinates[0].count};
+  return status;
+}
+
+static TetcastStatus keep_hidden(const TetcastMeshDesc *desc, TetcastMesh *mesh) {
+  mesh->hidden_bits = desc->hidden_bits;
+  if (!desc->hidden || !desc->hidden_bits)
+    return TETCAST_OK;
+  mesh->hidden = desc->hidden;
+  if (desc->ownership == TETCAST_BORROW || desc->tetrahedra.count == 0)
+    return TETCAST_OK;
+  if (!tc_allocate_array(mesh->context, &mesh->memory[4], desc->tetrahedra.count, 1, "hidden cells"))
+    return TETCAST_ERROR_MEMORY;
+  memcpy(mesh->memory[4], desc->hidden, (size_t)desc->tetrahedra.count);
+  mesh->hidden = mesh->memory[4];
+  return TETCAST_OK;
+}
+
 TetcastStatus tc_mesh_create(TetcastContext *context, const TetcastMeshDesc *desc, TetcastMesh **out) {
-  if (desc->vertices.count > TC_MAX_COUNT || desc->tetrahedra.count > TC_MAX_COUNT) {
+  const bool apart = !desc->vertices.data;
+  const int64_t vertices = apart ? desc->coordinates[0].count : desc->vertices.count;
+  if (vertices > TC_MAX_COUNT || desc->tetrahedra.count > TC_MAX_COUNT) {
     return tc_error(context, TETCAST_ERROR_LIMIT,
-                    "%" PRId64 " vertices and %" PRId64 " tetrahedra: at most %d of each can be held",
-                    desc->vertices.count, desc->tetrahedra.count, (int)TC_MAX_COUNT);
+                    "%" PRId64 " vertices and %" PRId64 " tetrahedra: at most %d of each can be held", vertices,
+                    desc->tetrahedra.count, (int)TC_MAX_COUNT);
   }
   TetcastMesh *mesh;
   if (!tc_allocate_array(context, (void **)&mesh, 1, sizeof *mesh, "mesh"))
@@ -142,12 +179,13 @@ TetcastStatus tc_mesh_create(TetcastContext *context, const TetcastMeshDesc *des
   memset(mesh, 0, sizeof *mesh);
   mesh->context = context;
   mesh->index_base = desc->index_base;
-  TetcastStatus status =
-      tc_array_keep(context, &desc->vertices, 3, desc->ownership, "vertices", &mesh->vertices, &mesh->vertex_memory);
+  TetcastStatus status = apart ? keep_coordinates(desc, mesh) : keep_vertices(desc, mesh);
   if (!status) {
     status = tc_array_keep(context, &desc->tetrahedra, 4, desc->ownership, "tetrahedra", &mesh->tetrahedra,
-                           &mesh->tetrahedron_memory);
+                           &mesh->memory[3]);
   }
+  if (!status)
+    status = keep_hidden(desc, mesh);
   if (!status)
     status = examine(context, mesh);
   if (status) {
@@ -162,7 +200,7 @@ void tc_mesh_destroy(TetcastMesh *mesh) {
   if (!mesh)
     return;
   TetcastContext *context = mesh->context;
-  tc_release(context, mesh->vertex_memory);
-  tc_release(context, mesh->tetrahedron_memory);
+  for (size_t i = 0; i < sizeof mesh->memory / sizeof *mesh->memory; ++i)
+    tc_release(context, mesh->memory[i]);
   tc_release(context, mesh);
 }

@@ -12,7 +12,10 @@
 struct TetcastMesh {
   TetcastContext *context;
   TetcastArray vertices, tetrahedra;
-  void *vertex_memory, *tetrahedron_memory; /* NULL when borrowed */
+  TetcastArray coordinates[3]; /* x, y, z; of `vertices`, or apart, where its data is NULL */
+  const uint8_t *hidden;       /* [tetrahedra]: bits that may hide the cell; NULL: none is hidden */
+  uint8_t hidden_bits;         /* those of `hidden` that count */
+  void *memory[5];             /* of these arrays; NULL when borrowed */
   double bounds[6];
   int index_base; /* the number that the tetrahedra have for the first vertex, 0 or 1 */
 };
@@ -35,17 +38,32 @@ void tc_field_destroy(TetcastField *field);
 void tc_field_range(const TetcastField *field, double range[2], int64_t *nonfinite_count);
 TetcastStatus tc_mesh_health(TetcastContext *context, const TetcastMesh *mesh, TetcastMeshHealth *health);
 
+/* Lets a mesh have coordinates that are in one array, with a stride: x, y and z are views of it. */
+static inline void tc_mesh_set_vertices(TetcastMesh *mesh, const TetcastArray *vertices) {
+  mesh->vertices = *vertices;
+  for (int k = 0; k < 3; ++k) {
+    mesh->coordinates[k] = *vertices;
+    if (vertices->data)
+      mesh->coordinates[k].data = (const char *)vertices->data + (size_t)k * tc_type_size(vertices->type);
+  }
+}
+
 static inline void tc_mesh_vertex(const TetcastMesh *mesh, int64_t i, double position[3]) {
-  const char *tuple = (const char *)mesh->vertices.data + i * mesh->vertices.stride; /* need not be aligned */
-  if (mesh->vertices.type == TETCAST_TYPE_FLOAT64) {
-    memcpy(position, tuple, 3 * sizeof *position);
-  } else {
-    for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 3; ++k) {
+    const TetcastArray *of = &mesh->coordinates[k];
+    const char *at = (const char *)of->data + i * of->stride; /* need not be aligned */
+    if (of->type == TETCAST_TYPE_FLOAT64) {
+      memcpy(&position[k], at, sizeof *position);
+    } else {
       float p;
-      memcpy(&p, tuple + k * (int)sizeof p, sizeof p);
+      memcpy(&p, at, sizeof p);
       position[k] = (double)p;
     }
   }
+}
+
+static inline bool tc_mesh_hides(const TetcastMesh *mesh, int64_t i) {
+  return mesh->hidden && mesh->hidden[i] & mesh->hidden_bits;
 }
 
 /* The vertices of a cell as they were given: counted from the index base, and perhaps not checked yet. */

@@ -127,6 +127,8 @@ static void find_thin_cells(const TetcastMesh *mesh, const uint32_t *vertices, c
   for (int64_t i = 0; i < mesh->tetrahedra.count; ++i) {
     uint32_t v[4], own[4], is[4], to[4];
     bool moves = false;
+    if (tc_mesh_hides(mesh, i))
+      continue;
     tc_mesh_cell(mesh, i, v);
     for (int k = 0; k < 4; ++k) {
       own[k] = place[v[k]];

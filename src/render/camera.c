@@ -51,11 +51,17 @@ TetcastStatus tc_view_create(TetcastContext *context, const TetcastCamera *camer
                     camera->up[0], camera->up[1], camera->up[2]);
   }
   tc_cross(view->right, view->forward, view->up);
+  for (int k = 0; k < 2; ++k)
+    view->center[k] = camera->center[k];
   const double half =
       view->orthographic ? ldexp(0.5 * camera->height, -volume->exponent) : tan(0.5 * camera->fovy * DEGREE);
   if (!(half * aspect < TOO_FAR && half < TOO_FAR)) {
     return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: a height of %g is too large for the mesh",
                     camera->height);
+  }
+  if (!(half * aspect * fabs(view->center[0]) < TOO_FAR && half * fabs(view->center[1]) < TOO_FAR)) {
+    return tc_error(context, TETCAST_ERROR_ARGUMENT, "camera: a center of %g, %g is too far from the mesh",
+                    camera->center[0], camera->center[1]);
   }
   for (int k = 0; k < 3; ++k) {
     view->right[k] *= half * aspect;

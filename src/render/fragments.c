@@ -55,6 +55,8 @@ void tc_fragments_sort(TetcastFragment *fragments, int64_t count) {
     return;
   }
   for (int64_t i = 1; i < count; ++i) {
+    if (compare(&fragments[i - 1], &fragments[i]) <= 0)
+      continue;
     const TetcastFragment moved = fragments[i];
     int64_t at = i;
     for (; at > 0 && compare(&moved, &fragments[at - 1]) < 0; --at)
@@ -82,7 +84,7 @@ static void find_seen(const TcRender *render, double seen[2][2]) {
       from_eye[k] = ldexp(volume->info.bounds[2 * k + (corner >> k & 1)], -volume->exponent) - view->eye[k];
     const double depth = view->orthographic ? 1 : tc_dot(from_eye, to[2]) / scale;
     for (int k = 0; k < 2; ++k) {
-      const double place = tc_dot(from_eye, to[k]) / scale / depth;
+      const double place = tc_dot(from_eye, to[k]) / scale / depth - view->center[k];
       const double pixel = (k == 0 ? 1 + place : 1 - place) / 2 * size[k];
       low[k] = fmin(low[k], depth > 0 ? pixel : -INFINITY); /* beside the eye or behind it: anywhere */
       high[k] = fmax(high[k], depth > 0 ? pixel : INFINITY);
@@ -98,6 +100,8 @@ bool tc_fragments_tile(const TcRender *render, int64_t x0, int64_t y0, int64_t x
   TcFragmentList *list = &working->worker.fragments;
   const int64_t before = list->count, columns = x1 - x0;
   const int exponent = render->job.shell->volume->exponent;
+  /* In two steps, as 2^exponent alone may be too large or too small a number. */
+  const double scale[2] = {ldexp(1, exponent / 2), ldexp(1, exponent - exponent / 2)};
   const double(*seen)[2] = (const double(*)[2])render->fragments->seen;
   if ((double)x1 < seen[0][0] || (double)x0 > seen[0][1] || (double)y1 < seen[1][0] || (double)y0 > seen[1][1])
     return true;
@@ -107,8 +111,8 @@ bool tc_fragments_tile(const TcRender *render, int64_t x0, int64_t y0, int64_t x
     TetcastFragment *f = &list->data[i];
     const int64_t x = x0 + f->pixel % columns, y = y0 + f->pixel / columns - render->first_row;
     f->pixel = y * render->job.width + x;
-    f->begin = ldexp(f->begin, exponent);
-    f->end = ldexp(f->end, exponent);
+    f->begin = f->begin * scale[0] * scale[1];
+    f->end = f->end * scale[0] * scale[1];
     ++render->fragments->place[f->pixel];
   }
   return !list->out_of_memory;

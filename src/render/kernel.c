@@ -135,7 +135,7 @@ TC_INLINE void advance(const int which, const unsigned on, const TcGround *given
       uint32_t reached;
       active[i] = p->active;
       lost[i] = tc_packet_cross(on, &ground, p, &q[i], &crossed[i], &reached);
-      ended[i] = tc_packet_reach(on, &ground, p, reached);
+      ended[i] = tc_packet_reach(on, &ground, p, reached, &crossed[i]);
     }
     EACH_PACKET {
       TcPacket *p = &packet[i].walk;
@@ -487,7 +487,8 @@ static void place_samples(const TcJob *job, const TcGround *ground, const TcWide
   const double samples_x = job->samples_x, samples_y = job->samples_y;
   const TcWide across = *column + 0.5, down = *row + 0.5;
   const double width = (double)job->width * samples_x, height = (double)job->height * samples_y;
-  const TcWide u = (across + across - width) / width, v = (height - (down + down)) / height; /* rounded once */
+  const double *center = job->view.center, left = width - width * center[0], top = height + height * center[1];
+  const TcWide u = (across + across - left) / width, v = (top - (down + down)) / height; /* rounded once */
   if (job->screen) {
     lines->x = across / samples_x - job->screen->x0;
     lines->y = down / samples_y - job->screen->y0;

@@ -32,7 +32,8 @@ static bool is_hidden(const Outline *o, int64_t x, int64_t y, double z) {
   const TetcastFrame *frame = o->frame;
   double distance = z;
   if (!o->view->orthographic) {
-    const double u = (2 * (double)x + 1) / (double)frame->width - 1, v = 1 - (2 * (double)y + 1) / (double)o->height;
+    const double u = o->view->center[0] + (2 * (double)x + 1) / (double)frame->width - 1,
+                 v = o->view->center[1] + 1 - (2 * (double)y + 1) / (double)o->height;
     double direction[3];
     for (int k = 0; k < 3; ++k)
       direction[k] = o->view->forward[k] + u * o->view->right[k] + v * o->view->up[k];
@@ -124,8 +125,8 @@ static void draw_edge(const Outline *o, double corner[2][3]) {
   Seen seen[2];
   for (int i = 0; i < 2; ++i) {
     const double depth = view->orthographic ? 1 : place[i][2];
-    seen[i] = (Seen){.x = (place[i][0] / depth + 1) / 2 * (double)o->frame->width,
-                     .y = (1 - place[i][1] / depth) / 2 * (double)o->height,
+    seen[i] = (Seen){.x = (place[i][0] / depth - view->center[0] + 1) / 2 * (double)o->frame->width,
+                     .y = (1 + view->center[1] - place[i][1] / depth) / 2 * (double)o->height,
                      .z = place[i][2]};
   }
   draw_line(o, &seen[0], &seen[1]);

@@ -111,7 +111,9 @@ void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job) {
 
 /* Sets up the job for fragments of what is seen through a transfer function. */
 static void see_fragments(const TetcastScene *scene, TcJob *job) {
-  const unsigned needed = TC_COLORED | (job->pieces->scaled ? TC_SCALED : 0) | association_of(scene->values);
+  const unsigned looks = (job->surfaces ? TC_SURFACES : 0) | (job->second ? TC_SECOND : 0);
+  const unsigned needed =
+      TC_COLORED | TC_PARTS | (job->pieces->scaled ? TC_SCALED : 0) | looks | association_of(scene->values);
   job->sums = 1;
   job->kernel = choose_row("visit", needed, &job->one_lane);
 }
@@ -427,8 +429,9 @@ static TetcastStatus run(TcRender *render, const TetcastRenderDesc *desc, Tetcas
 TetcastStatus tc_find_looks(const TetcastScene *scene, const TetcastRenderDesc *desc, bool depth, bool normal,
                             TcRender *render) {
   TcJob *job = &render->job;
-  const bool surfaces = depth || tc_scene_has_surfaces(scene), lit = tc_scene_is_lit(scene),
-             rows = scene->row_count > 0;
+  const bool lit = tc_scene_is_lit(scene), rows = scene->row_count > 0,
+             one_row = render->fragments && (rows || scene->values->association != TETCAST_POINT),
+             surfaces = depth || one_row || tc_scene_has_surfaces(scene);
   const bool all = (int)surfaces + (int)lit + (int)rows > 1 || (lit && !tc_light_is_gray(&scene->lighting));
   TetcastStatus status = TETCAST_OK;
   if (surfaces || all) {

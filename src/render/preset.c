@@ -24,7 +24,8 @@ static void set_axial(const TetcastVolume *volume, TcLine lines[RAYS]) {
 /* The rays of a small picture. */
 static void set_pixels(const TcView *view, TcLine lines[RAYS]) {
   for (int i = 0; i < RAYS; ++i) {
-    const double x = (2 * (i % WIDTH) + 1.0) / WIDTH - 1, y = 1 - (2 * (i / WIDTH) + 1.0) / HEIGHT;
+    const double x = view->center[0] + (2 * (i % WIDTH) + 1.0) / WIDTH - 1,
+                 y = view->center[1] + 1 - (2 * (i / WIDTH) + 1.0) / HEIGHT;
     lines[i] = (TcLine){.end = INFINITY};
     for (int k = 0; k < 3; ++k) {
       const double shift = x * view->right[k] + y * view->up[k];

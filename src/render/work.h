@@ -45,7 +45,8 @@ static inline TcGathered tc_render_gathered(const TcRender *render) {
 
 /* Surfaces, light in the volume and a transfer function's second dimension, as far as the scene has them, for
  * tc_forget_looks(). Of the kernels, one has white light alone, one surfaces, one the second dimension; what has more
- * than one of these, or light of a colour, takes the kernel that has all. */
+ * than one of these, or light of a colour, takes the kernel that has all. Fragments have one that expects surfaces
+ * where the field isn't one of points, or the transfer function has two dimensions. */
 TetcastStatus tc_find_looks(const TetcastScene *scene, const TetcastRenderDesc *desc, bool depth, bool normal,
                             TcRender *render);
 void tc_forget_looks(TetcastContext *context, TcRender *render);

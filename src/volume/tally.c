@@ -40,14 +40,13 @@ TC_INLINE double real_at(const char *from, bool wide) {
   return (double)narrow;
 }
 
-TC_INLINE void gather_positions(const TetcastArray *vertices, uint32_t vertex[CELLS][4], bool wide, Block *block) {
-  const char *data = vertices->data;
-  const int64_t stride = vertices->stride, size = wide ? sizeof(double) : sizeof(float);
+TC_INLINE void gather_positions(const TetcastArray coordinates[3], uint32_t vertex[CELLS][4], bool wide, Block *block) {
   for (int l = 0; l < CELLS; ++l) {
     for (int k = 0; k < 4; ++k) {
-      const char *position = data + vertex[l][k] * stride;
-      for (int j = 0; j < 3; ++j)
-        block->position[k][j][l] = real_at(position + j * size, wide);
+      for (int j = 0; j < 3; ++j) {
+        const TetcastArray *of = &coordinates[j];
+        block->position[k][j][l] = real_at((const char *)of->data + vertex[l][k] * of->stride, wide);
+      }
     }
   }
 }
@@ -77,16 +76,19 @@ static void gather_values(const TetcastField *field, int64_t begin, int count, u
   }
 }
 
-/* Cells beyond `count`, at the end of the mesh, have the first vertex four times. */
+/* Cells beyond `count`, at the end of the mesh, have the first vertex four times, and hidden cells one of theirs. */
 static void gather(const TcTally *tally, int64_t begin, int count, Block *block) {
   uint32_t vertex[CELLS][4];
-  for (int l = 0; l < count; ++l)
+  for (int l = 0; l < count; ++l) {
     tc_mesh_cell(tally->mesh, begin + l, vertex[l]);
+    for (int k = 1; tc_mesh_hides(tally->mesh, begin + l) && k < 4; ++k)
+      vertex[l][k] = vertex[l][0];
+  }
   memset(vertex[count], 0, (size_t)(CELLS - count) * sizeof *vertex);
   if (tally->mesh->vertices.type == TETCAST_TYPE_FLOAT32)
-    gather_positions(&tally->mesh->vertices, vertex, false, block);
+    gather_positions(tally->mesh->coordinates, vertex, false, block);
   else
-    gather_positions(&tally->mesh->vertices, vertex, true, block);
+    gather_positions(tally->mesh->coordinates, vertex, true, block);
   gather_values(tally->field, begin, count, vertex, block);
 }
 

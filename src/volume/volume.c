@@ -261,13 +261,15 @@ static TetcastStatus build(TetcastVolume *volume, const TetcastMesh *mesh, const
     return status;
   volume->cell_count = volume->adjacency.cell_count;
   if (volume->cell_count == 0) {
-    return tc_error(volume->context, TETCAST_ERROR_DATA, "the mesh has no cell with an inside (%" PRId64 " tetrahedra)",
-                    volume->mesh_cell_count);
+    return tc_error(volume->context, TETCAST_ERROR_DATA,
+                    "the mesh has no cell with an inside (%" PRId64 " tetrahedra, %" PRId64 " of them hidden)",
+                    volume->mesh_cell_count, volume->adjacency.hidden);
   }
-  if (volume->cell_count < volume->mesh_cell_count) {
+  const int64_t faulty = volume->mesh_cell_count - volume->cell_count - volume->adjacency.hidden;
+  if (faulty > 0) {
     tc_warning(volume->context,
                "%" PRId64 " tetrahedra left out: %" PRId64 " with a vertex twice, %" PRId64 " duplicates of others",
-               volume->mesh_cell_count - volume->cell_count, volume->adjacency.collapsed, volume->adjacency.duplicates);
+               faulty, volume->adjacency.collapsed, volume->adjacency.duplicates);
   }
   if (volume->adjacency.nonmanifold > 0 && shell_only(volume)) {
     tc_warning(

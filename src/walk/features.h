@@ -15,6 +15,7 @@ enum {
   TC_LIT = 1 << 7,      /* light falls on the volume: a colour times a factor that is linear in a cell */
   TC_TINTED = 1 << 8,   /* this factor differs between red, green and blue */
   TC_SECOND = 1 << 9,   /* the transfer function depends on a second quantity, too, which is constant in a cell */
+  TC_PARTS = 1 << 10, /* a face of the shell has the same depth and scalar as in another part of the mesh that has it */
   TC_EVERY_FEATURE = TC_COLORED | TC_SCALED | TC_BOUND,
 
   /* The scalar's association: a kernel has one of these at most. With none of them, the scalar is one of points. */

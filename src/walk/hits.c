@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { FEW = 32 };
+
 bool tc_hits_grow(TcHits *hits) {
   const int64_t capacity = hits->capacity ? 2 * hits->capacity : 64;
   TcHit *data = tc_allocate(hits->context, capacity, sizeof *data);
@@ -31,8 +33,17 @@ static int compare_hits(const void *left, const void *right) {
 void tc_hits_sort(TcHits *hits) {
   if (hits->count == 2 && compare_hits(&hits->data[0], &hits->data[1]) <= 0)
     return;
-  if (hits->count > 1)
+  if (hits->count > FEW) {
     qsort(hits->data, (size_t)hits->count, sizeof *hits->data, compare_hits);
+    return;
+  }
+  for (int64_t i = 1; i < hits->count; ++i) {
+    const TcHit moved = hits->data[i];
+    int64_t at = i;
+    for (; at > 0 && compare_hits(&moved, &hits->data[at - 1]) < 0; --at)
+      hits->data[at] = hits->data[at - 1];
+    hits->data[at] = moved;
+  }
 }
 
 void tc_hits_clear(TcHits *hits) {

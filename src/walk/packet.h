@@ -117,6 +117,58 @@ TC_INLINE TcVec tc_packet_shift(const TcGround *ground, const TcPacket *p) {
   return tc_madd(beside, p->at.tilt.z, tc_set((TcReal)ground->resolution.depth));
 }
 
+/* a before b in an order that follows from where they are alone. */
+TC_INLINE TcMask tc_point_before(const TcLanePoints *a, const TcLanePoints *b) {
+  const TcMask nearer = tc_lt(a->d, b->d), below = tc_lt(a->y, b->y), level = tc_and(tc_eq(a->y, b->y), nearer);
+  return tc_or(tc_lt(a->x, b->x), tc_and(tc_eq(a->x, b->x), tc_or(below, level)));
+}
+
+/* With TC_PARTS: puts a face's vertices in an order in which any part of the mesh has them, though they have other
+ * numbers there. The shell's faces may be those to other parts. If edges, and depth and scalar, are computed from them
+ * in this order, they have the same bits in both parts, and what lies exactly in the face is in one of these. */
+TC_INLINE void tc_points_arrange(TcLanePoints v[3]) {
+  static const int pairs[3][2] = {{0, 1}, {1, 2}, {0, 1}};
+  TC_UNROLLED for (int i = 0; i < 3; ++i) {
+    TcLanePoints *a = &v[pairs[i][0]], *b = &v[pairs[i][1]];
+    const TcMask swap = tc_point_before(b, a);
+    const TcLanePoints first = tc_select_points(swap, *b, *a);
+    *b = tc_select_points(swap, *a, *b);
+    *a = first;
+  }
+}
+
+/* With TC_PARTS: computes anew where the lanes of `mask` are at the shell. */
+TC_NOINLINE void tc_packet_settle(const unsigned on, const TcGround *ground, TcPacket *p, TcMask mask) {
+  TcLanePoints v[3] = {p->v[0], p->v[1], p->v[2]};
+  tc_points_arrange(v);
+  TcVec e[3];
+  tc_edges_of(mask, v, e);
+  for (int k = 0; k < 3; ++k)
+    e[k] = tc_abs(e[k]);
+  TcCrossing at;
+  tc_cross_face(on & TC_ASSOCIATIONS, ground, &p->rays, v, e, &at);
+  p->at.z = tc_select(mask, at.z, p->at.z);
+  if (!(on & TC_ASSOCIATIONS))
+    p->at.s = tc_select(mask, at.s, p->at.s);
+}
+
+/* The same for lanes that set out from a face, whose vertices, arranged, are v. Those of `turn` have v[1] and v[2] the
+ * other way round. */
+TC_INLINE void tc_packet_settle_start(const unsigned on, const TcGround *ground, TcPacket *p, TcMask mask, TcMask turn,
+                                      const TcLanePoints v[3], const TcVec e[3]) {
+  const TcVec weight[3] = {tc_abs(e[0]), tc_abs(e[1]), tc_abs(e[2])};
+  TcCrossing at;
+  tc_cross_face(on, ground, &p->rays, v, weight, &at);
+  p->at.z = tc_select(mask, at.z, p->at.z);
+  if (!(on & TC_ASSOCIATIONS))
+    p->at.s = tc_select(mask, at.s, p->at.s);
+  if (on & (TC_WEIGHTS | TC_CORNERS | TC_SURFACES | TC_LIT)) {
+    const TcVec *b = at.barycentric, turned[3] = {b[0], tc_select(turn, b[2], b[1]), tc_select(turn, b[1], b[2])};
+    for (int k = 0; k < 3; ++k)
+      p->at.barycentric[k] = tc_select(mask, turned[k], p->at.barycentric[k]);
+  }
+}
+
 /* The lanes of `starting` set out from the shell's faces that their hits name. */
 TC_NOINLINE void tc_packet_set_out(const unsigned on, const TcGround *ground, TcPacket *p) {
   uint32_t id[3][TC_LANES] = {{0}};
@@ -132,6 +184,8 @@ TC_NOINLINE void tc_packet_set_out(const unsigned on, const TcGround *ground, Tc
   TcLanePoints v[3];
   for (int k = 0; k < 3; ++k)
     tc_points_load(ground, &p->rays, id[k], &v[k]);
+  if (on & TC_PARTS)
+    tc_points_arrange(v);
   TcVec e[3];
   const TcMask mask = tc_mask_of(p->starting);
   tc_edges_of(mask, v, e);
@@ -142,7 +196,10 @@ TC_NOINLINE void tc_packet_set_out(const unsigned on, const TcGround *ground, Tc
   const TcVec weight[3] = {tc_abs(e[0]), tc_abs(tc_select(turn, e[2], e[1])), tc_abs(tc_select(turn, e[1], e[2]))};
   for (int k = 0; k < 3; ++k)
     p->weight[k] = tc_select(mask, weight[k], p->weight[k]);
-  tc_cross_face(on, ground, &p->rays, p->v, p->weight, &p->at);
+  if (on & TC_PARTS)
+    tc_packet_settle_start(on, ground, p, mask, turn, v, e);
+  else
+    tc_cross_face(on, ground, &p->rays, p->v, p->weight, &p->at);
   if (on & TC_BOUND)
     p->shift += tc_select(mask, tc_packet_shift(ground, p), tc_set(0));
 #if TC_SINGLE
@@ -298,7 +355,8 @@ TC_NOINLINE unsigned tc_packet_invisible(const TcShell *shell, const TcPacket *p
 
 /* A step's third part: lets the lanes that have reached the shell rest, and returns them; the others have their next
  * vertex fetched. */
-TC_INLINE unsigned tc_packet_reach(const unsigned on, const TcGround *ground, TcPacket *p, uint32_t reached) {
+TC_INLINE unsigned tc_packet_reach(const unsigned on, const TcGround *ground, TcPacket *p, uint32_t reached,
+                                   TcCrossed *crossed) {
   unsigned ended = 0;
   if (TC_UNLIKELY(ground->shell->visible != NULL)) {
     if (TC_UNLIKELY(tc_packet_ends(ground->shell, p, reached)))
@@ -311,6 +369,10 @@ TC_INLINE unsigned tc_packet_reach(const unsigned on, const TcGround *ground, Tc
       const int l = __builtin_ctz(lanes);
       p->exit_cell[l] = p->from[l];
       p->exit_face[l] = p->face[l];
+    }
+    if (on & TC_PARTS) {
+      tc_packet_settle(on, ground, p, tc_mask_of(ended));
+      crossed->s1 = on & TC_ASSOCIATIONS ? crossed->s1 : p->at.s;
     }
     if (on & TC_BOUND)
       p->shift += tc_select(tc_mask_of(ended), tc_packet_shift(ground, p), tc_set(0));

@@ -29,6 +29,9 @@ static TcDual dual(const Long3 c, long double factor) {
 
 bool tc_screen_setup(const TetcastVolume *volume, const TcView *view, int64_t width, int64_t height, TcScreen *screen) {
   const double half_width = 0.5 * (double)width, half_height = 0.5 * (double)height, radius = volume->radius;
+  /* Where what lies straight ahead is in the picture. */
+  const double ahead_x = half_width - half_width * view->center[0],
+               ahead_y = half_height + half_height * view->center[1];
   double to_center[3];
   for (int k = 0; k < 3; ++k)
     to_center[k] = volume->center[k] - view->eye[k];
@@ -64,10 +67,10 @@ bool tc_screen_setup(const TetcastVolume *volume, const TcView *view, int64_t wi
   } else {
     screen->extent = 1.01 * scale * radius + 1;
   }
-  screen->x0 = nearbyint(half_width + x);
-  screen->y0 = nearbyint(half_height + y);
-  screen->offset_x = half_width - screen->x0;
-  screen->offset_y = half_height - screen->y0;
+  screen->x0 = nearbyint(ahead_x + x);
+  screen->y0 = nearbyint(ahead_y + y);
+  screen->offset_x = ahead_x - screen->x0;
+  screen->offset_y = ahead_y - screen->y0;
   if (!(screen->extent < 0x1p40) || !(fabs(screen->x0) < 0x1p40) || !(fabs(screen->y0) < 0x1p40))
     return false;
   int exponent;

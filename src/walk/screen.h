@@ -12,9 +12,10 @@
 #include "volume/rows.h"
 
 /* A camera in scaled coordinates. The ray through position (u, v) ∈ [−1, 1]² of the picture goes along
- * forward + u right + v up (perspective), or starts at eye + u right + v up (orthographic). */
+ * forward + u right + v up (perspective), or starts at eye + u right + v up (orthographic), where `center` is added to
+ * (u, v). */
 typedef struct TcView {
-  double eye[3], forward[3], right[3], up[3];
+  double eye[3], forward[3], right[3], up[3], center[2];
   bool orthographic;
 } TcView;
 

@@ -51,6 +51,9 @@ void job_numbers(const Job *job);
 /* Any rays beside a frame, and the cells that they cross. */
 void job_rays(const Job *job);
 
+/* Fragments of parts of the mesh, each beside a frame of the part. */
+void job_parts(const Job *job);
+
 /* Writes the mesh as .vtu; reads it; renders it with the command. */
 void job_file(const Job *job);
 

@@ -66,6 +66,7 @@ static bool run_scene(const Options *options, const SceneDesc *scene) {
               {job_features, SCENE_FEATURES, "features"},
               {job_numbers, SCENE_FEATURES, "statistics"},
               {job_rays, SCENE_FEATURES, "rays"},
+              {job_parts, SCENE_FEATURES, "parts"},
               {job_file, SCENE_FILE, "files"},
               {job_cells, SCENE_CELLS, "cutting cells"}};
   if (scene->n == 0 && !options->body) {

@@ -230,6 +230,12 @@ def numbers(results):
         yield (row['scene'], count(row['tetrahedra']), row['case'], number(row['cpu_s']), number(1e9 * row['cpu_s'] / row['tetrahedra']))
 
 
+def parts(results):
+    for frame in results.all(task='parts', renderer='frame'):
+        fragments = results.one(task='parts', scene=frame['scene'], case=frame['case'], renderer='fragments')
+        yield (frame['scene'], frame['case'], number(frame['cpu_s']), number(fragments['cpu_s']), number(ratio(fragments, frame)))
+
+
 def isosurfaces(results):
     """Sentences about VTK's way to isosurfaces, beside a picture of tetcast's with three opaque ones."""
     for vtk in results.all(task='isosurfaces'):
@@ -274,6 +280,8 @@ def write(results, path, figures):
         table(file, ('scene', 'tetrahedra', 'what', 's', 'ns a tet'), numbers(results))
         file.write('## Any rays\n\n')
         table(file, ('scene', 'rays', 's', 'ns a cell', 'against the first'), features(results, 'rays'))
+        file.write('## Parts of a mesh\n\n')
+        table(file, ('scene', 'part', 'frame, s', 'fragments, s', 'fragments / frame'), parts(results))
         file.write('## Other measurements\n\n')
         table(file, ('scene', 'what', 'case', 'pixels', 'of', 'threads', 'wall, s', 'CPU, s', 'error'), others(results))
 

@@ -293,6 +293,27 @@ static void the_error_is_a_fifth_channel(void **) {
   clear_folder();
 }
 
+// A file of 8-bit pixels holds what tetcast_frame_bytes() makes.
+static void files_of_bytes_hold_a_frames_bytes(void **) {
+  clear_folder();
+  const int64_t width = 37, height = 90;
+  std::vector<double> pixels = sample_pixels(width, height);
+  const double backgrounds[][4] = {{1, 1, 1, 1}, {0.1, 0.6, 0.35, 1}, {0.3, 0.2, 0.9, 0.4}, {0, 0, 0, 0}};
+  TetcastFrame *frame = borrow_frame(pixels.data(), TETCAST_TYPE_FLOAT64, width, height, 0);
+  for (const auto &background : backgrounds) {
+    const int channels = background[3] == 1 ? 3 : 4;
+    std::vector<unsigned char> bytes(size_t(width * height * channels));
+    assert_int_equal(write(folder / "a.png", pixels, width, height, TETCAST_PIXEL_DEFAULT, background), TETCAST_OK);
+    assert_int_equal(tetcast_frame_bytes(frame, background, channels, bytes.data(), 0), TETCAST_OK);
+    const Picture picture = read_back(folder / "a.png");
+    assert_int_equal(picture.spec.nchannels, channels);
+    for (size_t i = 0; i < bytes.size(); i++)
+      assert_int_equal(std::lround(255 * picture.values[i]), bytes[i]);
+  }
+  tetcast_frame_destroy(&frame);
+  clear_folder();
+}
+
 static double at(const TetcastFrame *frame, const void *values, size_t i) {
   return tetcast_frame_type(frame) == TETCAST_TYPE_FLOAT64 ? static_cast<const double *>(values)[i]
                                                            : double(static_cast<const float *>(values)[i]);
@@ -810,6 +831,7 @@ static void full_disk_leaves_the_old_file_and_no_word_on_stderr(void **) {
 int main() {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(formats_hold_what_they_should),
+      cmocka_unit_test(files_of_bytes_hold_a_frames_bytes),
       cmocka_unit_test(the_error_is_a_fifth_channel),
       cmocka_unit_test(groups_are_channels),
       cmocka_unit_test(every_format_holds_the_picture_or_is_refused),

@@ -205,7 +205,7 @@ static void check_parts(TetcastContext *context, const Cube *cube, const Partiti
   assert_int_equal(tetcast_fragments_composite(context, lists, lists_count, all, &overlap), TETCAST_OK);
   assert_int_equal(tetcast_fragments_composite(context, reversed, lists_count, again, NULL), TETCAST_OK);
   assert_memory_equal(tetcast_frame_pixels(all), tetcast_frame_pixels(again), PIXELS * 4 * sizeof(double));
-  assert_true(overlap >= 0 && overlap < 1e-14);
+  assert_true(overlap == 0);
   const double *a = tetcast_frame_pixels(one), *b = tetcast_frame_pixels(all),
                *error = tetcast_frame_channel(one, TETCAST_CHANNEL_ERROR);
   double off = 0;
@@ -371,7 +371,18 @@ static void what_has_no_fragments_is_refused(void **state) {
   assert_int_equal(tetcast_scene_set_blend(world.scene, TETCAST_BLEND_COMPOSITE), TETCAST_OK);
   const TetcastIsosurface surface = {.value = 0.5, .opacity = 1};
   assert_int_equal(tetcast_scene_set_isosurfaces(world.scene, &surface, 1), TETCAST_OK);
-  check_refused(&world, NULL, "not possible with surfaces");
+  TetcastShadingDesc shading = tetcast_shading_desc_default();
+  assert_int_equal(tetcast_scene_set_shading(world.scene, &shading), TETCAST_OK);
+  check_refused(&world, NULL, "not possible with smooth normals");
+  shading.occlusion_rays = 1;
+  assert_int_equal(tetcast_scene_set_shading(world.scene, &shading), TETCAST_OK);
+  check_refused(&world, NULL, "not possible with shadows");
+  shading.shade = TETCAST_SHADE_VOLUME;
+  assert_int_equal(tetcast_scene_set_shading(world.scene, &shading), TETCAST_OK);
+  check_refused(&world, NULL, "not possible with light in the volume");
+  const TetcastBoundary boundary = {.opacity = 0.5};
+  assert_int_equal(tetcast_scene_set_boundary(world.scene, &boundary), TETCAST_OK);
+  check_refused(&world, NULL, "not possible with the boundary");
   world_end(&world);
   world_begin(&world, 2, 0, 1, TETCAST_TRAVERSAL_FACES);
   set_values(&world, world.cube.values, TETCAST_POINT);

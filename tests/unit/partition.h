@@ -79,17 +79,39 @@ static inline TetcastMesh *mesh_of_owner(TetcastContext *context, const Cube *cu
   return mesh;
 }
 
-/* A part, with the field of the cube's values. */
-static inline Part part_of(TetcastContext *context, const Cube *cube, const int *owner, int which, uint64_t *seed) {
+/* The values of the cells of one owner, or of their corners, which jump from cell to cell. */
+static inline void values_of_owner(const Cube *cube, const int *owner, int which, TetcastAssociation association,
+                                   double *values) {
+  for (int64_t i = 0; i < cube->cell_count; ++i) {
+    if (owner[i] != which)
+      continue;
+    const double own = 0.5 + 0.5 * sin(0.7 * (double)i);
+    for (int k = 0; association == TETCAST_CORNER && k < 4; ++k)
+      *values++ = 0.9 * cube->values[cube->cells[4 * i + k]] + 0.1 * own;
+    if (association == TETCAST_CELL)
+      *values++ = own;
+  }
+}
+
+/* A part, with the field of the cube's values, or those of cells. */
+static inline Part part_of_kind(TetcastContext *context, const Cube *cube, const int *owner, int which,
+                                TetcastAssociation association, uint64_t *seed) {
   Part part = {NULL, NULL};
-  double *values = malloc((size_t)cube->vertex_count * sizeof *values);
+  const int64_t most = 4 * cube->cell_count + cube->vertex_count;
+  double *values = malloc((size_t)most * sizeof *values);
   TetcastMesh *mesh = mesh_of_owner(context, cube, owner, which, seed, values);
   if (mesh) {
     TetcastVolumeDesc desc = tetcast_volume_desc_default();
     desc.bounds = unit_bounds;
+    desc.corners = association == TETCAST_CORNER;
     assert_int_equal(tetcast_volume_create(context, mesh, &desc, &part.volume), TETCAST_OK);
     assert_int_equal(tetcast_scene_create(context, part.volume, &part.scene), TETCAST_OK);
-    TetcastField *field = field_of(context, values, tetcast_mesh_vertex_count(mesh), TETCAST_POINT);
+    int64_t count = tetcast_mesh_vertex_count(mesh);
+    if (association != TETCAST_POINT) {
+      values_of_owner(cube, owner, which, association, values);
+      count = tetcast_mesh_tetrahedron_count(mesh) * (association == TETCAST_CORNER ? 4 : 1);
+    }
+    TetcastField *field = field_of(context, values, count, association);
     assert_int_equal(tetcast_scene_set_field(part.scene, field), TETCAST_OK);
     tetcast_field_destroy(&field);
     tetcast_mesh_destroy(&mesh);
@@ -98,16 +120,25 @@ static inline Part part_of(TetcastContext *context, const Cube *cube, const int 
   return part;
 }
 
-static inline Partition partition_of(TetcastContext *context, const Cube *cube, Cut cut, int count) {
+static inline Part part_of(TetcastContext *context, const Cube *cube, const int *owner, int which, uint64_t *seed) {
+  return part_of_kind(context, cube, owner, which, TETCAST_POINT, seed);
+}
+
+static inline Partition partition_of_kind(TetcastContext *context, const Cube *cube, Cut cut, int count,
+                                          TetcastAssociation association) {
   Partition partition = {.count = count};
   uint64_t seed = 11 + (uint64_t)count;
   int *owner = malloc((size_t)cube->cell_count * sizeof *owner);
   for (int64_t i = 0; i < cube->cell_count; ++i)
     owner[i] = owner_of(cube, i, cut, count, &seed);
   for (int i = 0; i < count; ++i)
-    partition.part[i] = part_of(context, cube, owner, i, &seed);
+    partition.part[i] = part_of_kind(context, cube, owner, i, association, &seed);
   free(owner);
   return partition;
+}
+
+static inline Partition partition_of(TetcastContext *context, const Cube *cube, Cut cut, int count) {
+  return partition_of_kind(context, cube, cut, count, TETCAST_POINT);
 }
 
 static inline void part_end(Part *part) {

@@ -72,8 +72,8 @@ static inline void ray_of(const TetcastCamera *camera, int width, int height, in
     up[k] = right[(k + 1) % 3] * forward[(k + 2) % 3] - right[(k + 2) % 3] * forward[(k + 1) % 3];
   const bool parallel = camera->projection == TETCAST_ORTHOGRAPHIC;
   const double half = parallel ? camera->height / 2 : tan(camera->fovy * acos(-1) / 360);
-  const double u = ((pixel % width + 0.5) / width * 2 - 1) * half * width / height,
-               v = (1 - (pixel / width + 0.5) / height * 2) * half;
+  const double u = ((pixel % width + 0.5) / width * 2 - 1 + camera->center[0]) * half * width / height,
+               v = (1 - (pixel / width + 0.5) / height * 2 + camera->center[1]) * half;
   length = 0;
   for (int k = 0; k < 3; ++k) {
     const double shift = u * right[k] + v * up[k];

@@ -86,6 +86,38 @@ static void assert_same_field(const TetcastDataset *dataset, const char *name, c
   tetcast_field_destroy(&field);
 }
 
+/* Coordinates that come apart are written as others; cells that are hidden are so when they are read again. */
+static void test_parts(void **state) {
+  Fixture *fixture = *state;
+  static const float x[5] = {0, 1, 0, 0, 1}, y[5] = {0, 0, 1, 0, 1}, z[5] = {0, 0, 0, 1, 1};
+  static const int32_t cells[2][4] = {{0, 1, 2, 3}, {1, 2, 3, 4}};
+  static const uint8_t marks[2] = {0, 4};
+  TetcastMeshDesc desc = tetcast_mesh_desc_default();
+  desc.coordinates[0] = (TetcastArray){.data = x, .type = TETCAST_TYPE_FLOAT32, .count = 5};
+  desc.coordinates[1] = (TetcastArray){.data = y, .type = TETCAST_TYPE_FLOAT32, .count = 5};
+  desc.coordinates[2] = (TetcastArray){.data = z, .type = TETCAST_TYPE_FLOAT32, .count = 5};
+  desc.tetrahedra = (TetcastArray){.data = cells, .type = TETCAST_TYPE_INT32, .count = 2};
+  desc.hidden = marks;
+  desc.hidden_bits = 4;
+  TetcastMesh *mesh, *again;
+  assert_int_equal(tetcast_mesh_create(fixture->context, &desc, &mesh), TETCAST_OK);
+  const char *path = in_folder(fixture, "parts.vtu");
+  assert_int_equal(tetcast_dataset_write(fixture->context, path, mesh, 0, NULL, NULL), TETCAST_OK);
+  TetcastDataset *dataset = read_good(fixture, path);
+  assert_int_equal(tetcast_dataset_pieces(dataset).ghost_cells, 1);
+  assert_int_equal(tetcast_dataset_mesh(dataset, &again), TETCAST_OK);
+  assert_int_equal(tetcast_mesh_tetrahedron_count(again), 1);
+  for (int64_t i = 0; i < 4; ++i) {
+    double p[3];
+    tetcast_mesh_vertex(again, i, p);
+    assert_true(p[0] == (double)x[i] && p[1] == (double)y[i] && p[2] == (double)z[i]);
+  }
+  tetcast_mesh_destroy(&again);
+  tetcast_dataset_destroy(&dataset);
+  tetcast_mesh_destroy(&mesh);
+  assert_int_equal(empty_folder(fixture), 1);
+}
+
 /* What is written is read again bit by bit: types, order, NaN and signed zero. */
 static void test_round_trip(void **state) {
   Fixture *fixture = *state;
@@ -262,7 +294,7 @@ static void test_full_disk(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {TEST(test_round_trip), TEST(test_counted_from_one), TEST(test_format),
-                                     TEST(test_failures), TEST(test_full_disk)};
+  const struct CMUnitTest tests[] = {TEST(test_round_trip), TEST(test_parts),    TEST(test_counted_from_one),
+                                     TEST(test_format),     TEST(test_failures), TEST(test_full_disk)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,6 +19,7 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkDoubleArray.h>
 #include <vtkErrorCode.h>
 #include <vtkFloatArray.h>
@@ -30,6 +31,7 @@
 #include <vtkTypeInt64Array.h>
 #include <vtkTypeUInt32Array.h>
 #include <vtkTypeUInt64Array.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
@@ -150,13 +152,46 @@ static void add_field(vtkUnstructuredGrid *grid, const TetcastMesh *mesh, const 
     attributes->SetActiveScalars(written.c_str()); // Readers show the first array by default.
 }
 
+// Coordinates that come in arrays apart are put together.
+static DataArray make_points(const TetcastMesh *mesh) {
+  const TetcastArray vertices = tetcast_mesh_vertices(mesh);
+  if (vertices.data || vertices.count == 0)
+    return wrap(vertices, 3);
+  const DataArray points = new_array(vertices.type);
+  points->SetNumberOfComponents(3);
+  points->SetNumberOfTuples(vertices.count);
+  for (int64_t i = 0; i < vertices.count; ++i) {
+    double position[3];
+    tetcast_mesh_vertex(mesh, i, position);
+    points->SetTuple(i, position);
+  }
+  return points;
+}
+
+// Marks the cells that the mesh hides, as VTK marks them.
+static void add_hidden(vtkUnstructuredGrid *grid, const TetcastMesh *mesh) {
+  const int64_t count = tetcast_mesh_tetrahedron_count(mesh);
+  int64_t first = 0;
+  while (first < count && !tetcast_mesh_hides(mesh, first))
+    ++first;
+  if (first == count)
+    return;
+  vtkNew<vtkUnsignedCharArray> marks;
+  marks->SetName(vtkDataSetAttributes::GhostArrayName());
+  marks->SetNumberOfTuples(count);
+  for (int64_t i = 0; i < count; ++i)
+    marks->SetValue(i, tetcast_mesh_hides(mesh, i) ? vtkDataSetAttributes::HIDDENCELL : 0);
+  grid->GetCellData()->AddArray(marks);
+}
+
 static vtkSmartPointer<vtkUnstructuredGrid> make_grid(const TetcastMesh *mesh, int count, const char *const *names,
                                                       const TetcastField *const *fields) {
   auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   vtkNew<vtkPoints> points;
-  points->SetData(wrap(tetcast_mesh_vertices(mesh), 3));
+  points->SetData(make_points(mesh));
   grid->SetPoints(points);
   grid->SetCells(VTK_TETRA, make_cells(mesh));
+  add_hidden(grid, mesh);
   for (int i = 0; i < count; ++i) {
     if (!names[i] || !*names[i] || !fields[i])
       fail(TETCAST_ERROR_ARGUMENT, "field %d or its name is missing", i);
