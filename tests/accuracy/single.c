@@ -39,10 +39,11 @@ static int check(TetcastContext *context, const Body *body, const TetcastTransfe
                  const TetcastCamera *camera, double tolerance, double *used) {
   static Look exact, picture;
   TetcastScene *scene = scene_of(context, body, transfer);
-  int single = 0;
+  int single = 0, undecided = 0, compared = 0;
   for (TetcastIsa isa = TETCAST_ISA_SCALAR; isa <= TETCAST_ISA_AVX512; ++isa) {
     if (!tc_cpu_has(isa))
       continue;
+    compared += PIXELS;
     look(context, scene, camera, isa, 0, &exact);
     assert_string_equal(exact.stats.precision, "double");
     look(context, scene, camera, isa, tolerance, &picture);
@@ -51,7 +52,10 @@ static int check(TetcastContext *context, const Body *body, const TetcastTransfe
     if (isa < TETCAST_ISA_AVX2)
       assert_false(is_single);
     for (int i = 0; i < PIXELS; ++i) {
-      assert_true(picture.error[i] <= tolerance);
+      if (exact.error[i] > tolerance) /* a ray along faces, on which side of them not even double precision tells */
+        ++undecided;
+      else
+        assert_true(picture.error[i] <= tolerance);
       for (int k = 0; k < 4; ++k) {
         const double off = fabs(picture.rgba[4 * i + k] - exact.rgba[4 * i + k]);
         assert_true(off <= picture.error[i] + exact.error[i]);
@@ -60,6 +64,7 @@ static int check(TetcastContext *context, const Body *body, const TetcastTransfe
       }
     }
   }
+  assert_true(undecided <= compared / 20);
   tetcast_scene_destroy(&scene);
   return single;
 }
