@@ -171,10 +171,6 @@ TetcastArray numbers_of(vtkDataArray *array, std::vector<double> *storage) {
   return view;
 }
 
-void remember(void *user, TetcastSeverity, const char *text) {
-  *static_cast<std::string *>(user) = text;
-}
-
 void cut_all(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, const tcv::CutOptions &options,
              tcv::Tetrahedra *result) {
   std::vector<double> orders, rational; // These must outlive the call that reads them.
@@ -199,23 +195,15 @@ void cut_all(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, 
   desc.sources = options.sources || grid->GetCellData()->GetNumberOfArrays() > 0;
 
   // Messages of the library shall begin with the name of the file, so a context of our own catches them.
-  std::string words;
-  TetcastContextDesc own = tetcast_context_desc_default();
-  own.threads = options.threads;
-  own.message = remember;
-  own.message_user = &words;
-  TetcastContext *context = nullptr;
-  if (tetcast_context_create(&own, &context) != TETCAST_OK)
-    throw std::bad_alloc();
-  result->context.reset(context);
-  TetcastCut *cut = nullptr;
-  const TetcastStatus status = tetcast_cells_cut(context, &desc, &cut);
-  if (status == TETCAST_ERROR_MEMORY)
-    throw std::bad_alloc();
-  if (status != TETCAST_OK)
-    tcv::fail(status, "%s: %s", path, words.c_str());
-  result->cut.reset(cut);
-  tetcast_cut_info(cut, &result->info);
+  try {
+    result->context.emplace(options.threads);
+    tetcast::check(tetcast_cells_cut(*result->context, &desc, result->cut.out()));
+  } catch (const tetcast::Error &error) {
+    if (error.status() == TETCAST_ERROR_MEMORY)
+      throw std::bad_alloc();
+    tcv::fail(error.status(), "%s: %s", path, error.what());
+  }
+  tetcast_cut_info(result->cut, &result->info);
 }
 
 // A wedge of 21 nodes has 15 of them behind its six corners, and programs do not agree about their order. This table
@@ -300,7 +288,7 @@ void add_points(const tcv::Tetrahedra &tetrahedra, vtkDataArray *points) {
     return;
   std::vector<double> positions(3 * static_cast<size_t>(added));
   const TetcastArray view = tcv::view_of(points);
-  tetcast_cut_interpolate(tetrahedra.cut.get(), &view, 3, positions.data());
+  tetcast_cut_interpolate(tetrahedra.cut, &view, 3, positions.data());
   if (!points->Resize(count + added))
     throw std::bad_alloc();
   for (int64_t i = 0; i < added; ++i)
@@ -316,13 +304,6 @@ bool is_volume(int type) {
   return found && found->way != IGNORED;
 }
 
-void ContextDeleter::operator()(TetcastContext *context) const {
-  tetcast_context_destroy(&context);
-}
-void CutDeleter::operator()(TetcastCut *cut) const {
-  tetcast_cut_destroy(&cut);
-}
-
 void make_tetrahedra(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *points, const CutOptions &options,
                      Tetrahedra *result) {
   survey(path, grid, result);
@@ -336,8 +317,8 @@ void make_tetrahedra(const char *path, vtkUnstructuredGrid *grid, vtkDataArray *
   order_wedges(grid, points);
   cut_all(path, grid, points, options, result);
   add_points(*result, points);
-  result->view = tetcast_cut_tetrahedra(result->cut.get());
-  result->source = tetcast_cut_sources(result->cut.get());
+  result->view = tetcast_cut_tetrahedra(result->cut);
+  result->source = tetcast_cut_sources(result->cut);
   if (result->view.count == 0)
     fail(TETCAST_ERROR_DATA, "%s: no tetrahedron can be made of its cells", path);
 }

@@ -4,7 +4,7 @@
 #define TETCAST_VTK_CELLS_HPP
 
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,23 +12,17 @@
 #include <vtkSmartPointer.h>
 
 #include <tetcast/cells.h>
+#include <tetcast/tetcast.hpp>
 
 class vtkUnstructuredGrid;
 
 namespace tcv {
 
-struct ContextDeleter {
-  void operator()(TetcastContext *context) const;
-};
-struct CutDeleter {
-  void operator()(TetcastCut *cut) const;
-};
-
 struct Tetrahedra {
-  TetcastArray view = {};                                  // [m, 4]: a view of one of the next two
-  vtkSmartPointer<vtkDataArray> connectivity;              // the file's own array, if all its cells are tetrahedra
-  std::unique_ptr<TetcastContext, ContextDeleter> context; // the context of `cut`
-  std::unique_ptr<TetcastCut, CutDeleter> cut;
+  TetcastArray view = {};                     // [m, 4]: a view of one of the next two
+  vtkSmartPointer<vtkDataArray> connectivity; // the file's own array, if all its cells are tetrahedra
+  std::optional<tetcast::Context> context;    // the context of `cut`
+  tetcast::Cut cut;
   // [m] int32: the file's cell that each tetrahedron is a part of; empty if all its cells are tetrahedra.
   TetcastArray source = {};
   std::vector<std::pair<const char *, int64_t>> types; // the types of the file's cells, largest count first

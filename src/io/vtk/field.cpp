@@ -285,7 +285,7 @@ static std::vector<char> extended(const TetcastArray &values, const Tetrahedra &
   const size_t count = static_cast<size_t>(values.count), added = static_cast<size_t>(tetrahedra.info.added_vertices);
   const size_t size = static_cast<size_t>(type_size(values.type)), stride = static_cast<size_t>(values.stride);
   std::vector<double> more(added);
-  tetcast_cut_interpolate(tetrahedra.cut.get(), &values, 1, more.data());
+  tetcast_cut_interpolate(tetrahedra.cut, &values, 1, more.data());
   std::vector<char> result((count + added) * size);
   for (size_t i = 0; i < count; ++i) {
     std::memcpy(&result[i * size], static_cast<const char *>(values.data) + i * stride, size);
