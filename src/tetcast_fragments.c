@@ -35,12 +35,12 @@ static TetcastStatus check_looks(const TetcastScene *scene, const TetcastRenderD
                      : scene->boundary.opacity > 0 ? "the boundary, which a part has of its own"
                      : tc_scene_is_lit(scene)      ? "light in the volume"
                      : lit && (lighting->shadows || lighting->occlusion_rays) ? "shadows"
-                     : lit && lighting->smooth                                ? "smooth normals"
-                     : desc->integrator                                       ? "another integrator than the exact one"
-                     : desc->samples != 1                                     ? "several samples"
-                     : desc->adaptive_coarse                                  ? "adaptive"
-                     : scene->volume->traversal != TETCAST_TRAVERSAL_SHELL    ? "the traversal of faces"
-                                                                              : NULL;
+                     : lit && lighting->smooth ? "smooth normals, which need other parts; flat ones don't"
+                     : desc->integrator        ? "another integrator than the exact one"
+                     : desc->samples != 1      ? "several samples"
+                     : desc->adaptive_coarse   ? "adaptive"
+                     : scene->volume->traversal != TETCAST_TRAVERSAL_SHELL ? "the traversal of faces"
+                                                                           : NULL;
   return what ? ARGUMENT(context, "fragments: not possible with %s", what) : TETCAST_OK;
 }
 
