@@ -75,7 +75,7 @@ static TetcastStatus report_tetrahedron(const TetcastMesh *mesh, int64_t i) {
     ++k;
   return tc_error(mesh->context, TETCAST_ERROR_DATA,
                   "tetrahedron %" PRId64 " names vertex %" PRId64 ", but there are %" PRId64 " vertices%s",
-                  i + mesh->index_base, v[k], mesh->vertices.count, mesh->index_base ? ", counted from 1" : "");
+                  i + mesh->index_base, v[k], mesh->vertices.count, mesh->index_base ? ", counted from 1" : ", counted from 0");
 }
 
 /* Up to here, everything that is computed from coordinates stays finite, such as a camera that sees all of them. */

@@ -14,8 +14,18 @@
 enum { PARTS = 64, JOINT_PARTS = 16 };
 
 /* Quantiles: how many at a time, into how many bins the range is divided at first and each of their brackets later, and
- * at how many distances from where a quantile may be expected its bracket is divided as well. */
-enum { TARGETS = 64, FIRST_BINS = 256, SECTIONS = 16, DISTANCES = 10, EDGES = SECTIONS + 1 + 2 * DISTANCES };
+ * at how many distances from where a quantile may be expected, and from 0, its bracket is divided as well. */
+enum {
+  TARGETS = 64,
+  FIRST_BINS = 256,
+  SECTIONS = 16,
+  DISTANCES = 10,
+  DECLINES = 5,
+  EDGES = SECTIONS + 1 + 2 * DISTANCES + 2 * DECLINES
+};
+
+/* Where the largest value is 1, quantiles as small as this are 0. */
+static const double nothing = 0x1p-960;
 
 /* ── units ── */
 
@@ -289,9 +299,12 @@ static double expected(const Bracket *b, double target) {
   return b->low + part * (b->high - b->low);
 }
 
-/* Edges that divide a bracket: evenly, so that it gets smaller whatever the distribution is, and closer and closer to
- * where the quantile may be expected, so that it soon is tiny if the distribution is smooth. Returns how many. */
+/* Edges that divide a bracket: evenly, so that it gets smaller whatever the distribution is; closer and closer to where
+ * the quantile may be expected, so that it soon is tiny if the distribution is smooth; and closer and closer to 0, so
+ * that one value of another magnitude, such as a mark of places without values, doesn't hide all others. Returns how
+ * many. */
 static int divide(const Bracket *b, double target, double *edges) {
+  static const double declines[DECLINES] = {0x1p-16, 0x1p-48, 0x1p-120, 0x1p-400, 0x1p-960};
   const double width = b->high - b->low, middle = expected(b, target);
   int n = 0;
   for (int k = 0; k <= SECTIONS; ++k)
@@ -301,11 +314,15 @@ static int divide(const Bracket *b, double target, double *edges) {
     edges[n++] = fmax(b->low, middle - distance);
     edges[n++] = fmin(b->high, middle + distance);
   }
+  for (int k = 0; b->low <= 0 && b->high >= 0 && k < DECLINES; ++k) {
+    edges[n++] = fmax(b->low, -declines[k]);
+    edges[n++] = fmin(b->high, declines[k]);
+  }
   return n;
 }
 
 static bool is_wide(const Bracket *b) {
-  const double close = fmax(4 * 0x1p-53 * fmax(fabs(b->low), fabs(b->high)), 0x1p-80); /* of a largest value of 1 */
+  const double close = fmax(4 * 0x1p-53 * fmax(fabs(b->low), fabs(b->high)), 2 * nothing);
   return b->high - b->low > close && b->below_low < b->below_high;
 }
 
@@ -389,7 +406,9 @@ TetcastStatus tc_statistics_quantiles(TetcastContext *context, const TetcastMesh
     return TETCAST_ERROR_MEMORY;
   const TetcastStatus status = find_brackets(context, &tally, range, shares, count, bracket, target, edges);
   tc_release(context, edges);
-  for (int i = 0; !status && i < count; ++i)
-    values[i] = ldexp(expected(&bracket[i], target[i]), units.value);
+  for (int i = 0; !status && i < count; ++i) {
+    const double value = expected(&bracket[i], target[i]);
+    values[i] = fabs(value) <= nothing ? 0 : ldexp(value, units.value);
+  }
   return status;
 }

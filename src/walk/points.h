@@ -314,11 +314,13 @@ TC_INLINE void tc_face_tilt(const unsigned on, bool perspective, const TcRays *r
  * or the other way round, a face has passed through it. So such points lie, but for δ at either end, at the depths that
  * faces have within ε of the ray. Of a face that the ray crosses this is what tc_packet_shift() says. One that it
  * passes by within ε is seen edge-on if these depths matter at all: they are at most those of its vertices, and at most
- * 2 ε times the slope of its depth, which tc_face_tilt() derives.
+ * 2 ε times the slope of its depth. d of its vertices is linear on the screen, with |∂d/∂x| + |∂d/∂y| = rise / |w|, and
+ * the depth z = scale d, in perspective scale d / (1 + d), whose derivative is scale / (1 + d)².
  *
  * The face is farther than ε if its vertices lie beyond ε on one side, in x, in y, or across one of its edges. With e
  * the cross product of an edge's ends, and w the sum of all three, the place of the ray across that edge is e where the
- * edge is at 0 and the third vertex at w. The sum's rounding is below 2⁻⁵⁰ times the largest of them. */
+ * edge is at 0 and the third vertex at w. The sum's rounding is below 2⁻⁵⁰ (single precision: 2⁻²¹)
+ * times the largest of them. */
 TC_NOINLINE void tc_graze_face(const TcGround *ground, const TcRays *rays, const TcLanePoints v[3], TcVec *length) {
   const TcVec zero = tc_set(0);
   TcVec e[3], z[3], most = zero, reach = zero;
@@ -328,7 +330,7 @@ TC_NOINLINE void tc_graze_face(const TcGround *ground, const TcRays *rays, const
     most = tc_max(most, tc_abs(e[k]));
     reach = tc_max(reach, tc_max(tc_abs(v[k].x), tc_abs(v[k].y)));
   }
-  const TcVec rounding = most * (TcReal)0x1p-50, w = e[0] + e[1] + e[2];
+  const TcVec rounding = most * (TcReal)(TC_SINGLE ? 0x1p-21 : 0x1p-50), w = e[0] + e[1] + e[2];
   const TcVec beside =
       tc_madd(tc_set((TcReal)(1.5 * ground->resolution.relative)), reach, tc_set((TcReal)ground->resolution.beside));
   const TcVec low = tc_min(w, zero) - rounding, high = tc_max(w, zero) + rounding;
@@ -349,9 +351,15 @@ TC_NOINLINE void tc_graze_face(const TcGround *ground, const TcRays *rays, const
   for (int k = 0; k < 3; ++k)
     z[k] = rays->scale * (perspective ? v[k].d / (1 + v[k].d) : v[k].d);
   const TcVec first = tc_least3(z[0], z[1], z[2]), last = tc_most3(z[0], z[1], z[2]), range = last - first;
-  TcVec slope = (TcReal)8.5 * reach * range / tc_max(tc_abs(w) - rounding, zero);
-  if (perspective)
-    slope *= (1 + tc_most3(v[0].d, v[1].d, v[2].d)) / (1 + tc_least3(v[0].d, v[1].d, v[2].d));
+  const TcVec d1 = v[1].d - v[0].d, d2 = v[2].d - v[0].d;
+  TcVec rise =
+      tc_abs(d1 * (v[2].y - v[0].y) - d2 * (v[1].y - v[0].y)) + tc_abs(d1 * (v[2].x - v[0].x) - d2 * (v[1].x - v[0].x));
+  rise += (TcReal)(TC_SINGLE ? 0x1p-19 : 0x1p-48) * reach * tc_max(tc_abs(d1), tc_abs(d2));
+  TcVec slope = tc_abs(rays->scale) * rise / tc_max(tc_abs(w) - rounding, zero);
+  if (perspective) {
+    const TcVec far = 1 + tc_least3(v[0].d, v[1].d, v[2].d);
+    slope /= far * far;
+  }
   const TcVec tilted = 2 * beside * slope;
   /* What lies outside of the ray's interval doesn't count. An area of 0 has a slope that is infinite or NaN. */
   const TcVec counts = tc_min(last, rays->end) - tc_max(first, rays->begin);
