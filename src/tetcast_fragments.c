@@ -41,7 +41,7 @@ static TetcastStatus check_looks(const TetcastScene *scene, const TetcastRenderD
                      : desc->adaptive_coarse   ? "adaptive"
                      : scene->volume->traversal != TETCAST_TRAVERSAL_SHELL ? "the traversal of faces"
                                                                            : NULL;
-  return what ? ARGUMENT(context, "fragments: not possible with %s", what) : TETCAST_OK;
+  return what ? ARGUMENT(context, "parts of a mesh: not possible with %s", what) : TETCAST_OK;
 }
 
 typedef struct RenderFragments {

@@ -38,7 +38,9 @@ typedef struct TetcastMeshDesc {
    * made of the mesh: volumes, bounds, health, statistics. They keep their numbers, and their values in fields of cells
    * and of corners. Copied or borrowed as the others. NULL (the default): no cell is hidden. */
   const uint8_t *hidden;
-  /* The bits of `hidden` that hide a cell. Default: 0, none. */
+  /* The bits of `hidden` that hide a cell: above 0 if and only if `hidden` is given (TETCAST_ERROR_ARGUMENT). Default:
+   * 0.
+   */
   uint8_t hidden_bits;
 } TetcastMeshDesc;
 

@@ -20,7 +20,7 @@ typedef struct TetcastStatisticsDesc {
   /* Set by tetcast_statistics_desc_default(), so that a struct which was not made by it is told apart. */
   uint32_t cookie;
   /* The values that are told apart: from range[0] to range[1], above it, both finite. Default: 0, 0, the field's own
-   * range. */
+   * range, with the values of vertices that no cell uses, or none but hidden ones. */
   double range[2];
   /* Into how many bins of equal width the range is divided, from 1 to TETCAST_MAX_BINS; default 256. */
   int bins;
@@ -77,7 +77,8 @@ TETCAST_API TetcastStatus tetcast_statistics_create(TetcastContext *context, con
 TETCAST_API void tetcast_statistics_destroy(TetcastContext *context, TetcastStatistics **statistics);
 
 /* Finds the values below which these shares [count] of the volume lie, in [0, 1] and ascending, to the last bits:
- * values[i] for shares[i]. Cells with values that are not finite don't count; if there are no others, all are NaN. At
+ * values[i] for shares[i], where the largest magnitude is up to 1e90 times that of the others. Shares 0 and 1 are the
+ * field's own range. Cells with values that are not finite don't count; if there are no others, all are NaN. At
  * most 64 at a time. */
 TETCAST_API TetcastStatus tetcast_statistics_quantiles(TetcastContext *context, const TetcastMesh *mesh,
                                                        const TetcastField *field, const double *shares, int count,

@@ -177,6 +177,14 @@ void ranks_wait(Stage *stage) {
     cli_mpi()->mpi_destroy(&world);
 }
 
+void ranks_warn(void) {
+  static const char *const sizes[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_SIZE", NULL};
+  static const char *const numbers[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", NULL};
+  const int size = number_of_environment(sizes, 1);
+  if (!foreseen && size > 1 && number_of_environment(numbers, 0) == 0)
+    cli_warning("this is one of %d processes, each of which makes the whole picture; --mpi shares it out", size);
+}
+
 int ranks_threads(void) {
   static const char *const names[] = {"OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS", NULL};
   const int processors = (int)sysconf(_SC_NPROCESSORS_ONLN);

@@ -27,6 +27,9 @@ void ranks_wait(Stage *stage);
 /* How many threads a rank has where nothing is said: its share of the machine. */
 int ranks_threads(void);
 
+/* Warns where several processes of an MPI program do the same, as --mpi was forgotten. */
+void ranks_warn(void);
+
 /* Starts MPI, if --mpi is given. `code` is what came before: its agreed value is returned. */
 int ranks_begin(Stage *stage, const RenderOptions *options, int code);
 

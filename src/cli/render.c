@@ -56,6 +56,8 @@ static int check(Run *run) {
     return code;
   if (options->mpi && options->threads == 0)
     options->threads = ranks_threads();
+  if (!options->mpi)
+    ranks_warn();
   code = stage_begin(&run->stage, options);
   code = ranks_begin(&run->stage, options, code);
   if (code != CLI_DONE)

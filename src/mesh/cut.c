@@ -305,7 +305,8 @@ static TetcastStatus report(Cutter *cutter, int64_t i) {
                     "cell %" PRId64 ": %" PRId64 " nodes don't make a cell of type %u", i, cell.nodes, cell.type);
   case BAD_INDEX:
     return tc_error(cutter->context, TETCAST_ERROR_DATA,
-                    "cell %" PRId64 " names a vertex out of range: there are %" PRId64, i, cutter->vertex_count);
+                    "cell %" PRId64 " names a vertex out of range: there are %" PRId64 ", counted from 0", i,
+                    cutter->vertex_count);
   case BAD_FACES:
     return tc_error(cutter->context, TETCAST_ERROR_DATA,
                     "cell %" PRId64 ": the list of the polyhedron's faces is damaged", i);

@@ -75,7 +75,8 @@ static TetcastStatus report_tetrahedron(const TetcastMesh *mesh, int64_t i) {
     ++k;
   return tc_error(mesh->context, TETCAST_ERROR_DATA,
                   "tetrahedron %" PRId64 " names vertex %" PRId64 ", but there are %" PRId64 " vertices%s",
-                  i + mesh->index_base, v[k], mesh->vertices.count, mesh->index_base ? ", counted from 1" : ", counted from 0");
+                  i + mesh->index_base, v[k], mesh->vertices.count,
+                  mesh->index_base ? ", counted from 1" : ", counted from 0");
 }
 
 /* Up to here, everything that is computed from coordinates stays finite, such as a camera that sees all of them. */
@@ -153,7 +154,11 @@ static TetcastStatus keep_coordinates(const TetcastMeshDesc *desc, TetcastMesh *
 
 static TetcastStatus keep_hidden(const TetcastMeshDesc *desc, TetcastMesh *mesh) {
   mesh->hidden_bits = desc->hidden_bits;
-  if (!desc->hidden || !desc->hidden_bits)
+  if (!desc->hidden != !desc->hidden_bits)
+    return tc_error(mesh->context, TETCAST_ERROR_ARGUMENT,
+                    desc->hidden ? "hidden cells: hidden_bits is 0, which hides none"
+                                 : "hidden cells: hidden_bits is not 0, but hidden is NULL");
+  if (!desc->hidden)
     return TETCAST_OK;
   mesh->hidden = desc->hidden;
   if (desc->ownership == TETCAST_BORROW || desc->tetrahedra.count == 0)

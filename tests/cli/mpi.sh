@@ -176,8 +176,12 @@ fault 3 2 'unknown or ambiguous option --nothing' plain.pvtu -o no.png --nothing
 fault 3 2 '--mpi: for one picture' plain.pvtu -o no.png --orbit 3
 fault 3 2 '--mpi: for one picture' plain.pvtu -o no.png --time all
 fault 3 2 '--mpi: not possible with --deep' plain.pvtu -o no.exr --deep
-fault 2 1 'fragments: not possible with' plain.pvtu -o no.png --blend maximum
-fault 2 1 'fragments: not possible with' plain.pvtu -o no.png --samples 4
+checks=$((checks + 1))
+timeout 100 $launch -n 2 "$tetcast" render plain.pvtu $small --array s -o forgotten.png 2>"$work.err"
+[ "$(grep -c 'this is one of 2 processes, each of which makes the whole picture; --mpi shares it out' "$work.err")" = 1 ] ||
+  fail "--mpi is forgotten: $(cat "$work.err")"
+fault 2 1 'parts of a mesh: not possible with' plain.pvtu -o no.png --blend maximum
+fault 2 1 'parts of a mesh: not possible with' plain.pvtu -o no.png --samples 4
 fault 2 1 '--cell-to-point and --merge-tolerance' plain.pvtu -o no.png --cell-to-point
 fault 2 2 'eye' plain.pvtu -o no.png --eye 0.5,0.5,0.5 --target 0.5,0.5,0.5
 over 2 1 plain.pvtu $small -o full.png --stats /dev/full

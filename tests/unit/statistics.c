@@ -212,6 +212,46 @@ static void quantiles_are_where_the_volume_is(void **state) {
   subject_end(&s);
 }
 
+/* A value of another magnitude, where there is no cell, hides none of the others; a plateau at 0 is exactly 0. */
+static void quantiles_beside_a_mark(void **state) {
+  (void)state;
+  static const double shares[] = {0.01, 0.25, 0.5, 0.99};
+  Subject s;
+  subject_begin(&s, 4, 0.6, 2);
+  const int64_t count = s.cube.vertex_count;
+  double *vertices = malloc((size_t)(count + 1) * 3 * sizeof *vertices),
+         *values = malloc((size_t)(count + 1) * sizeof *values);
+  memcpy(vertices, s.cube.vertices, (size_t)count * 3 * sizeof *vertices);
+  memset(vertices + 3 * count, 0, 3 * sizeof *vertices);
+  TetcastMeshDesc desc = tetcast_mesh_desc_default();
+  desc.vertices = (TetcastArray){vertices, TETCAST_TYPE_FLOAT64, count + 1, 0};
+  desc.tetrahedra = (TetcastArray){s.cube.cells, TETCAST_TYPE_INT64, s.cube.cell_count, 0};
+  TetcastMesh *mesh = NULL;
+  assert_int_equal(tetcast_mesh_create(s.fixture.context, &desc, &mesh), TETCAST_OK);
+  for (int flat = 0; flat < 2; ++flat) {
+    double wanted[4], found[4];
+    for (int64_t i = 0; i < count; ++i)
+      values[i] = flat ? fmax(0, vertices[3 * i] - 0.9) : sin(9 * vertices[3 * i] + 4 * vertices[3 * i + 1]);
+    static const double marks[] = {0, 1e12, 1e30, -1e36, 1e60};
+    for (size_t k = 0; k < sizeof marks / sizeof *marks; ++k) {
+      values[count] = marks[k];
+      TetcastField *field = field_of(s.fixture.context, values, count + 1, TETCAST_POINT);
+      assert_int_equal(tetcast_statistics_quantiles(s.fixture.context, mesh, field, shares, 4, k ? found : wanted),
+                       TETCAST_OK);
+      for (int i = 0; k > 0 && i < 4; ++i)
+        if (!(fabs(found[i] - wanted[i]) <= 1e-12))
+          fail_msg("flat %d mark %g share %g: %.17g, wanted %.17g", flat, marks[k], shares[i], found[i], wanted[i]);
+      tetcast_field_destroy(&field);
+    }
+    if (flat)
+      assert_true(wanted[1] == 0 && found[1] == 0 && wanted[3] > 0);
+  }
+  tetcast_mesh_destroy(&mesh);
+  free(vertices);
+  free(values);
+  subject_end(&s);
+}
+
 /* ── extremes ── */
 
 /* In units far from 1, with values that differ by the last bits, and constant: nothing is NaN, and volumes add up. */
@@ -308,6 +348,7 @@ int main(void) {
       cmocka_unit_test(a_linear_field_is_that_of_its_box),
       cmocka_unit_test(a_random_field_is_the_sum_of_its_cells),
       cmocka_unit_test(quantiles_are_where_the_volume_is),
+      cmocka_unit_test(quantiles_beside_a_mark),
       cmocka_unit_test(no_unit_is_too_large_or_small),
       cmocka_unit_test(threads_change_no_bit),
       cmocka_unit_test(nonsense_is_refused),
