@@ -75,7 +75,8 @@ static void errors() {
   tetcast::Mesh mesh;
   expect(tetcast_mesh_create(context, &desc, mesh.out()) == TETCAST_ERROR_DATA && !mesh, "a status");
   const auto create = [&] { mesh = tetcast::make<tetcast::Mesh>(tetcast_mesh_create, context, &desc); };
-  expect(thrown<tetcast::Error>(create) == "tetrahedron 0 names vertex 6, but there are 6 vertices, counted from 0", "an exception");
+  expect(thrown<tetcast::Error>(create) == "tetrahedron 0 names vertex 6, but there are 6 vertices, counted from 0",
+         "an exception");
   expect(messages == 2, "the handler is called");
   try {
     create();
