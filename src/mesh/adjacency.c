@@ -61,7 +61,7 @@ static bool read_cells(void *data, int64_t begin, int64_t end, int worker) {
     const bool hides = tc_mesh_hides(build->mesh, i), flat = (v[0] == v[1]) | (v[1] == v[2]) | (v[2] == v[3]);
     hidden += hides;
     collapsed += flat & !hides;
-    build->records[i] = tc_record(flat | hides ? (uint32_t)build->vertex_count : v[0], (uint32_t)i);
+    build->records[i] = tc_record((flat | hides) ? (uint32_t)build->vertex_count : v[0], (uint32_t)i);
   }
   atomic_fetch_add(&build->hidden, hidden);
   atomic_fetch_add(&build->collapsed, collapsed);
