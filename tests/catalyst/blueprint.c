@@ -167,7 +167,7 @@ static void ghosts(void **state) {
           cells[i] = bits[i % 8] & 41 ? 6 : 0; /* what the simulation calls them */
       }
       for (int64_t i = 0; i < body->points && of_points; i++) {
-        body->ghost_points[i] = i % 19 == 0 ? 2 : i % 7 == 0 ? 1 : 0; /* 1 is of another part, and drawn */
+        body->ghost_points[i] = (uint8_t)(i % 19 == 0 ? 2 : i % 7 == 0 ? 1 : 0); /* 1 is of another part, and drawn */
         points[i] = way == 1 ? i % 19 == 0 : body->ghost_points[i];
       }
       body_describe(body, NULL, mesh);

@@ -150,7 +150,7 @@ static void each_third_step(void **state) {
   conduit_node_destroy(told);
   assert_int_equal(simulation_end(), 0);
   for (int i = 0; i < 8; i++) {
-    char name[16];
+    char name[32];
     snprintf(name, sizeof name, "t.%02d.png", i);
     assert_int_equal(access(name, F_OK), i % 3 ? -1 : 0);
   }
@@ -226,7 +226,7 @@ static void one_step_after_the_other(void **state) {
                            : "coordsets/coords/values/z",
                   STANDIN_FLOAT64, coordinates + a, body->points, 24);
     run(step);
-    char name[16], path[16];
+    char name[32], path[32];
     snprintf(name, sizeof name, "s.%02d.exr", i);
     snprintf(path, sizeof path, "s%d.vtu", i);
     body_write(body, path);
