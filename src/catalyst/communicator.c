@@ -2,10 +2,9 @@
 #include "communicator.h"
 
 #include <dlfcn.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "cli/cli.h"
+#include "cli/ranks.h"
 
 /* The same under all kinds of MPI: communicators are pointers (Open MPI) or numbers (MPICH), which pass for pointers.
  */
@@ -29,17 +28,8 @@ static int64_t size_by_mpi(int64_t handle) {
   return measure(communicator, &size) == 0 ? size : 0;
 }
 
-static int64_t size_by_environment(void) {
-  static const char *const names[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_SIZE", NULL};
-  double size;
-  for (int i = 0; names[i]; i++)
-    if (getenv(names[i]) && cli_parse_number(getenv(names[i]), &size) && size >= 1 && size < 1e9)
-      return (int64_t)size;
-  return 1;
-}
-
 int64_t communicator_size(const ConduitNode *node) {
   int64_t handle;
   const int64_t size = conduit_integer(node, &handle) ? size_by_mpi(handle) : 0;
-  return size > 0 ? size : size_by_environment();
+  return size > 0 ? size : ranks_started();
 }

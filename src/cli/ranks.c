@@ -177,10 +177,15 @@ void ranks_wait(Stage *stage) {
     cli_mpi()->mpi_destroy(&world);
 }
 
+int ranks_started(void) {
+  static const char *const names[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_SIZE", NULL};
+  const int size = number_of_environment(names, 1);
+  return size > 1 ? size : 1;
+}
+
 void ranks_warn(void) {
-  static const char *const sizes[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_SIZE", NULL};
   static const char *const numbers[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", NULL};
-  const int size = number_of_environment(sizes, 1);
+  const int size = ranks_started();
   if (!foreseen && size > 1 && number_of_environment(numbers, 0) == 0)
     cli_warning("this is one of %d processes, each of which makes the whole picture; --mpi shares it out", size);
 }

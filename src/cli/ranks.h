@@ -27,6 +27,9 @@ void ranks_wait(Stage *stage);
 /* How many threads a rank has where nothing is said: its share of the machine. */
 int ranks_threads(void);
 
+/* How many processes the program has, as the environment tells that mpirun makes; 1 where it says nothing. */
+int ranks_started(void);
+
 /* Warns where several processes of an MPI program do the same, as --mpi was forgotten. */
 void ranks_warn(void);
 

@@ -19,23 +19,15 @@ static unsigned char byte_of(double value) { /* NaN becomes 0 */
   return (unsigned char)(value > 0 ? floor(fmin(value, 1) * 255 + 0.5) : 0);
 }
 
-static void read_pixel(const TetcastFrame *frame, const char *row, int64_t x, double rgba[4]) {
-  for (int k = 0; k < 4; ++k) {
-    rgba[k] = frame->type == TETCAST_TYPE_FLOAT64 ? ((const double *)(const void *)row)[4 * x + k]
-                                                  : (double)((const float *)(const void *)row)[4 * x + k];
-  }
-}
-
 static bool convert_rows(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   const Bytes *b = data;
   const bool opaque = b->background[3] >= 1;
   for (int64_t y = begin; y < end; ++y) {
-    const char *from = (const char *)b->frame->pixels + y * b->frame->row_stride;
     unsigned char *to = b->to + y * b->row_stride;
     for (int64_t x = 0; x < b->frame->width; ++x, to += b->channels) {
       double rgba[4];
-      read_pixel(b->frame, from, x, rgba);
+      tc_frame_get(b->frame, x, y, rgba);
       const double behind = (1 - rgba[3]) * b->background[3], alpha = opaque ? 1 : rgba[3] + behind;
       const double scale = b->channels == 3 ? 1 : alpha > 0 ? 1 / alpha : 0;
       for (int k = 0; k < 3; ++k)

@@ -82,6 +82,14 @@ void tc_frame_recolor(TetcastFrame *frame, const TcPieces *colors) {
   }
 }
 
+void tc_frame_get(const TetcastFrame *frame, int64_t x, int64_t y, double rgba[4]) {
+  const char *row = (const char *)frame->pixels + y * frame->row_stride;
+  for (int k = 0; k < 4; ++k) {
+    rgba[k] = frame->type == TETCAST_TYPE_FLOAT64 ? ((const double *)(const void *)row)[4 * x + k]
+                                                  : (double)((const float *)(const void *)row)[4 * x + k];
+  }
+}
+
 double tc_frame_put(TetcastFrame *frame, int64_t x, int64_t y, const double rgba[4]) {
   char *row = (char *)frame->pixels + y * frame->row_stride;
   if (frame->type == TETCAST_TYPE_FLOAT64) {

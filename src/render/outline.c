@@ -45,12 +45,8 @@ static bool is_hidden(const Outline *o, int64_t x, int64_t y, double z) {
 /* Lays the line's colour over a pixel, or under it. */
 static void blend(const Outline *o, int64_t x, int64_t y, double coverage) {
   TetcastFrame *frame = o->frame;
-  char *row = (char *)frame->pixels + (y - o->first_row) * frame->row_stride;
   double rgba[4];
-  for (int k = 0; k < 4; ++k) {
-    rgba[k] = frame->type == TETCAST_TYPE_FLOAT64 ? ((const double *)(const void *)row)[4 * x + k]
-                                                  : (double)((const float *)(const void *)row)[4 * x + k];
-  }
+  tc_frame_get(frame, x, y - o->first_row, rgba);
   const double share = o->front ? coverage : coverage * (1 - rgba[3]), kept = o->front ? 1 - coverage : 1;
   for (int k = 0; k < 4; ++k)
     rgba[k] = kept * rgba[k] + share * (k < 3 ? o->color[k] : 1);

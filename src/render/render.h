@@ -81,6 +81,8 @@ void tc_frame_destroy(TetcastFrame *frame);
 void tc_frame_recolor(TetcastFrame *frame, const TcPieces *colors);
 void tc_frame_bytes(const TetcastFrame *frame, const double background[4], int channels, unsigned char *bytes,
                     int64_t row_stride);
+/* A pixel's red, green, blue and alpha. */
+void tc_frame_get(const TetcastFrame *frame, int64_t x, int64_t y, double rgba[4]);
 /* Stores a pixel's red, green, blue and alpha. Returns how far rounding to the frame's type has moved any of them. */
 double tc_frame_put(TetcastFrame *frame, int64_t x, int64_t y, const double rgba[4]);
 /* Stores a pixel and its values of all channels. Returns a bound on its error, rounding to the frame's type included;
