@@ -145,7 +145,7 @@ TC_NOINLINE void tc_packet_settle(const unsigned on, const TcGround *ground, TcP
   tc_edges_of(mask, v, e);
   for (int k = 0; k < 3; ++k)
     e[k] = tc_abs(e[k]);
-  TcCrossing at;
+  TcCrossing at = p->at;
   tc_cross_face(on & TC_ASSOCIATIONS, ground, &p->rays, v, e, &at);
   p->at.z = tc_select(mask, at.z, p->at.z);
   if (!(on & TC_ASSOCIATIONS))
@@ -157,7 +157,7 @@ TC_NOINLINE void tc_packet_settle(const unsigned on, const TcGround *ground, TcP
 TC_INLINE void tc_packet_settle_start(const unsigned on, const TcGround *ground, TcPacket *p, TcMask mask, TcMask turn,
                                       const TcLanePoints v[3], const TcVec e[3]) {
   const TcVec weight[3] = {tc_abs(e[0]), tc_abs(e[1]), tc_abs(e[2])};
-  TcCrossing at;
+  TcCrossing at = p->at;
   tc_cross_face(on, ground, &p->rays, v, weight, &at);
   p->at.z = tc_select(mask, at.z, p->at.z);
   if (!(on & TC_ASSOCIATIONS))
