@@ -70,11 +70,10 @@ bool tc_tolerance_single(const TcPieces *pieces, double tolerance, double larges
 
 double tc_tolerance_bound(const TcTolerance *tolerance, double depth, bool stopped, double alpha, int64_t segments,
                           double moved) {
-  const double color = tolerance->color, left = stopped ? exp(-depth) * color : 0;
+  const double color = tolerance->color, left = stopped ? exp(-depth) * color : 0,
+               relative = 2 * tolerance->relative / (1 - tolerance->relative) +
+                          (tolerance->rounding > 0 ? tolerance->rounding : tc_rounding(segments));
   if (!(moved < 0.09))
-    return color; /* no channel's error is larger than its largest value */
-  return left + moved +
-         alpha * color *
-             (2 * tolerance->relative / (1 - tolerance->relative) +
-              (tolerance->rounding > 0 ? tolerance->rounding : tc_rounding(segments)));
+    return color * (1 + relative); /* no channel's error is larger than its largest value, as computed */
+  return left + moved + alpha * color * relative;
 }

@@ -57,6 +57,19 @@ TC_INLINE bool jumps(const unsigned on, const TcGround *ground, const TcGatherJo
   return on & TC_WEIGHTS ? job->coefficients->cells != NULL : on & TC_ASSOCIATIONS || ground->holes;
 }
 
+/* With TC_BOUND: the error of the depth at which rays leave the cells just crossed, at p->at, in the lanes in which
+ * what is seen depends on it, and 0 in others. If the field jumps, that is wherever the face may lie within what is
+ * left of the interval, beyond `from`, be it only by rounding: the cell may then be crossed though it seems not to be.
+ * A field that doesn't jump is continued across the face by the cell ahead, and the spread of that cell covers it; but
+ * if the face seems to lie beyond an end of the interval and may lie within, a cell is seen whose spread isn't counted.
+ * Not being surely outside is what counts: a face seen edge-on may have an error that is infinite, or NaN. */
+TC_INLINE TcVec shift_of(const TcGround *ground, const TcPacket *p, bool jump, TcMask crossed, TcVec from) {
+  const TcVec z = p->at.z, begin = p->rays.begin, end = p->rays.end, shift = tc_packet_shift(ground, p);
+  const TcMask outside = tc_or(tc_le(z + shift, jump ? from : begin), tc_le(end, z - shift));
+  const TcMask beyond = tc_or(tc_le(z, begin), tc_le(end, z)), counts = jump ? crossed : tc_and(crossed, beyond);
+  return tc_select(tc_and_not(counts, outside), shift, tc_set(0));
+}
+
 /* Gathers the segments of the cells just crossed, as far as they lie beyond the depth that was seen already and within
  * the rays' intervals. Rounding, or a cell that is turned inside out, can make a face's depth less than that of the
  * face before. Such a segment counts for nothing, and of the next one only the part beyond the depth seen counts. So
@@ -96,11 +109,13 @@ TC_INLINE TcMask add_segment(const int which, const unsigned on, const TcGround 
   passage.begin = from;
   passage.end = z1;
   passage.leaving = leaving;
-  if (on & TC_BOUND)
+  if (on & TC_BOUND) {
+    const bool jump = jumps(on, ground, job);
     passage.spread = spread_of(on, ground, p, crossed, passage.length);
-  if (on & TC_BOUND && jumps(on, ground, job))
-    p->shift += tc_select(moved, tc_packet_shift(ground, p), tc_set(0)) +
-                tc_select(passage.crossed, crossed->grazed, tc_set(0));
+    p->shift += shift_of(ground, p, jump, passage.crossed, from);
+    if (jump)
+      p->shift += tc_select(passage.crossed, crossed->grazed, tc_set(0));
+  }
   tc_gather_segment(which, on, job, &packet->gather, moved, &passage);
   return ends;
 }

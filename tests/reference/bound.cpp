@@ -244,6 +244,13 @@ void see_edge_on(Random &random, bool always, Case &c) {
     camera.up[k] = k == other;
   }
   c.kind = within ? "edge-on within" : "edge-on";
+  if (within && random.chance(0.4)) { /* flat cells on either side of the plane, over which values change as before */
+    const double thin = random.power(-14, -3);
+    for (auto &p : c.scene.mesh.points)
+      if (std::abs(std::abs(p[size_t(other)] - plane) * n - 1) < 0.1)
+        p[size_t(other)] = plane + (p[size_t(other)] > plane ? thin : -thin);
+    c.kind += ", flat";
+  }
   if (!turned)
     return;
   for (auto &p : c.scene.mesh.points)
@@ -346,7 +353,7 @@ Case random_case(uint64_t seed, bool edge_on) {
     add_clip(random, c, size, middle);
   if (random.chance(edge_on ? 0.5 : 0.2))
     add_stop(random, c, size);
-  c.single = random.chance(0.3);
+  c.single = random.chance(0.3) && c.kind.find("flat") == std::string::npos; /* where they would have no volume */
   if (c.single) {
     round_to_single(mesh);
     for (Mesh &group : c.groups)
@@ -618,14 +625,15 @@ void judge_pixel(const Truth<Extended> &truth, const Truth<Widest> &widest, cons
                 rgba[2], rgba[3]);
 }
 
-void judge_scene(uint64_t seed, bool edge_on, Judge &judge) {
+/* Compares every `step`-th pixel. */
+void judge_scene(uint64_t seed, bool edge_on, int64_t step, Judge &judge) {
   const Case c = random_case(seed, edge_on);
   const Picture picture = render(c);
   const Truth<Extended> truth(c);
   const Truth<Widest> widest(c);
   std::atomic<int64_t> next{0};
   const auto work = [&] {
-    for (int64_t i = next++; i < pixels; i = next++)
+    for (int64_t i = step * next++; i < pixels; i = step * next++)
       judge_pixel(truth, widest, picture, i, seed, judge);
   };
   std::thread other(work);
@@ -633,7 +641,7 @@ void judge_scene(uint64_t seed, bool edge_on, Judge &judge) {
   other.join();
 }
 
-void compare(bool edge_on) {
+void compare(bool edge_on, int64_t step) {
   const char *text = std::getenv("TETCAST_BOUND_PIXELS"), *only = std::getenv("TETCAST_BOUND_SCENE");
   const int64_t wanted = text                                ? int64_t(std::strtod(text, nullptr))
                          : std::getenv("TETCAST_TEST_SHORT") ? 10000
@@ -641,9 +649,9 @@ void compare(bool edge_on) {
   Judge judge;
   int64_t compared = 0, doubtful = 0, violated = 0;
   if (only)
-    judge_scene(std::strtoull(only, nullptr, 10), edge_on, judge);
+    judge_scene(std::strtoull(only, nullptr, 10), edge_on, 1, judge);
   for (uint64_t seed = 0; !only && compared < wanted; seed++) {
-    judge_scene(seed, edge_on, judge);
+    judge_scene(seed, edge_on, step, judge);
     compared = doubtful = violated = 0;
     for (const auto &[kind, tally] : judge.tallies)
       compared += tally.compared, doubtful += tally.doubtful, violated += tally.violated;
@@ -659,11 +667,11 @@ void compare(bool edge_on) {
 }
 
 void the_error_channel_is_a_bound(void **) {
-  compare(false);
+  compare(false, 1);
 }
 
 void it_is_one_of_pictures_seen_edge_on(void **) {
-  compare(true);
+  compare(true, 7); /* their pixels are much the same, so that more pictures are worth more than more pixels */
 }
 
 } // namespace
