@@ -35,6 +35,9 @@ typedef struct TcGroups {
    * and at the face where they have left them; and with TC_BOUND the difference between the largest and the smallest
    * value at the vertices of the latter. */
   double *near, *far, *range;
+  /* [values][3][TC_LANES], not by_rays: the values at the vertices of the faces where rays are; and these vertices. */
+  double *held;
+  TcWord id[3];
   TcLength length;
 } TcGroups;
 
@@ -60,7 +63,7 @@ TC_INLINE int tc_groups_blocks(const TcCoefficients *c) {
 /* How many doubles a packet's TcGroups refers to. */
 static size_t tc_groups_size(const TcCoefficients *c) {
   const size_t beams = tc_groups_by_rays(c) ? TC_LANES * (size_t)tc_groups_blocks(c) : (size_t)c->groups;
-  return beams * sizeof(TcBeam) / sizeof(double) + 3 * TC_LANES * ((size_t)tc_coefficients_values(c) + TC_LANES);
+  return beams * sizeof(TcBeam) / sizeof(double) + 6 * TC_LANES * ((size_t)tc_coefficients_values(c) + TC_LANES);
 }
 
 /* Lets a packet's TcGroups refer to that many doubles at `memory`. */
@@ -73,6 +76,7 @@ static void tc_groups_place(const TcCoefficients *c, double *memory, TcGroups *g
       memory + (groups->by_rays ? TC_LANES * groups->blocks : c->groups) * (int64_t)(sizeof(TcBeam) / sizeof(double));
   groups->far = groups->near + TC_LANES * groups->columns;
   groups->range = groups->far + TC_LANES * groups->columns;
+  groups->held = groups->range + TC_LANES * groups->columns;
 }
 
 TC_INLINE void tc_groups_begin(const TcGatherJob *job, TcGroups *groups) {
@@ -131,37 +135,74 @@ TC_INLINE void tc_groups_at_rays(const unsigned on, const TcRows *rows, const Tc
   }
 }
 
-/* The same with a ray in each lane. Lanes without a ray have vertices, too, whose values are not stored. */
-TC_INLINE void tc_groups_at_lanes(const unsigned on, const TcRows *rows, const TcGroups *groups, TcMask mask,
-                                  const TcPacket *walk, double *values) {
-  int64_t row[3][TC_LANES];
+/* The lanes in which a and b differ. */
+TC_INLINE TcMask tc_groups_differ(TcWord a, TcWord b) {
+  const TcWord bits = a ^ b;
+  return tc_high_bit(bits | (0 - bits)); /* one of a number that isn't 0 and its negative is negative */
+}
+
+/* Holds the values at the vertices of the faces where rays are, with a ray in each lane; lanes without a ray have
+ * vertices, too. */
+TC_NOINLINE void tc_groups_hold_all(const TcRows *rows, TcGroups *groups, const TcPacket *walk) {
   for (int k = 0; k < 3; ++k) {
-    TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) row[k][l] = (int64_t)TC_AT(walk->v[k].id, l) * rows->width;
-  }
-  for (int i = 0; i < rows->width; ++i) {
-    const TcVec v[3] = {tc_groups_gather(rows, row[0], i), tc_groups_gather(rows, row[1], i),
-                        tc_groups_gather(rows, row[2], i)};
-    double *const at = values + i * TC_LANES, *const range = groups->range + i * TC_LANES;
-    tc_store(at, tc_select(mask, tc_weighted(walk->at.barycentric, v[0], v[1], v[2]), tc_load(at)));
-    if (on & TC_BOUND)
-      tc_store(range, tc_select(mask, tc_most3(v[0], v[1], v[2]) - tc_least3(v[0], v[1], v[2]), tc_load(range)));
+    groups->id[k] = walk->v[k].id;
+    int64_t row[TC_LANES];
+    for (int l = 0; l < TC_LANES; ++l)
+      row[l] = (int64_t)TC_AT(walk->v[k].id, l) * rows->width;
+    for (int i = 0; i < rows->width; ++i)
+      tc_store(groups->held + (i * 3 + k) * TC_LANES, tc_groups_gather(rows, row, i));
   }
 }
 
-TC_INLINE void tc_groups_at(const unsigned on, const TcCoefficients *c, const TcGroups *groups, TcMask mask,
-                            const TcPacket *walk, double *values) {
-  if (!c->points)
+/* The same at the next face, which the rays of `mask` have come to. A step along a path brings one new vertex into the
+ * face, in place of another, and only that is looked up; in lanes without a new one any is. Where cells are crossed one
+ * by one, more may be new. */
+TC_INLINE void tc_groups_hold(const TcRows *rows, TcGroups *groups, TcMask mask, const TcPacket *walk) {
+  TcMask fresh[3];
+  for (int k = 0; k < 3; ++k)
+    fresh[k] = tc_groups_differ(groups->id[k], walk->v[k].id);
+  const TcMask several = tc_or(tc_and(fresh[0], fresh[1]), tc_and(tc_or(fresh[0], fresh[1]), fresh[2]));
+  if (TC_UNLIKELY(tc_any(tc_and(mask, several)))) {
+    tc_groups_hold_all(rows, groups, walk);
     return;
-  if (groups->by_rays)
-    tc_groups_at_rays(on, c->points, groups, mask, walk, values);
-  else
-    tc_groups_at_lanes(on, c->points, groups, mask, walk, values);
+  }
+  for (int k = 0; k < 3; ++k)
+    groups->id[k] = walk->v[k].id;
+  const TcWord id = tc_select_word(fresh[0], groups->id[0], tc_select_word(fresh[1], groups->id[1], groups->id[2]));
+  int64_t row[TC_LANES];
+  TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) row[l] = (int64_t)TC_AT(id, l) * rows->width;
+  for (int i = 0; i < rows->width; ++i) {
+    double *const held = groups->held + i * 3 * TC_LANES;
+    const TcVec value = tc_groups_gather(rows, row, i);
+    for (int k = 0; k < 3; ++k)
+      tc_store(held + k * TC_LANES, tc_select(fresh[k], value, tc_load(held + k * TC_LANES)));
+  }
+}
+
+/* Interpolates the values that are held where rays are. */
+TC_INLINE void tc_groups_at_lanes(const unsigned on, const TcRows *rows, const TcGroups *groups, const TcPacket *walk,
+                                  double *values) {
+  for (int i = 0; i < rows->width; ++i) {
+    const double *const held = groups->held + i * 3 * TC_LANES;
+    const TcVec v[3] = {tc_load(held), tc_load(held + TC_LANES), tc_load(held + 2 * TC_LANES)};
+    tc_store(values + i * TC_LANES, tc_weighted(walk->at.barycentric, v[0], v[1], v[2]));
+    if (on & TC_BOUND)
+      tc_store(groups->range + i * TC_LANES, tc_most3(v[0], v[1], v[2]) - tc_least3(v[0], v[1], v[2]));
+  }
 }
 
 TC_NOINLINE void tc_groups_enter(const unsigned on, const TcGatherJob *job, TcGroups *groups, TcMask mask,
                                  const TcPacket *walk) {
   (void)on;
-  tc_groups_at(0, job->coefficients, groups, mask, walk, groups->near);
+  const TcRows *rows = job->coefficients->points;
+  if (!rows)
+    return;
+  if (groups->by_rays) {
+    tc_groups_at_rays(0, rows, groups, mask, walk, groups->near);
+    return;
+  }
+  tc_groups_hold_all(rows, groups, walk);
+  tc_groups_at_lanes(0, rows, groups, walk, groups->near);
 }
 
 /* Stores the values of the cells that the rays of `mask` have crossed. */
@@ -182,9 +223,10 @@ TC_INLINE void tc_groups_in(const TcCoefficients *c, TcGroups *groups, TcMask ma
 /* The segments over which is integrated, in the lanes of a vector. */
 typedef struct TcStretch {
   TcMask mask;
-  TcVec length, from, to; /* from, to: the part of the cell that counts, as fractions */
+  TcVec length, from, to; /* from, to: the part of the cell that counts, as fractions, if it is `partial` */
   /* With TC_BOUND: ∫ |error of f| dt is at most |f| · spread_own + (range of f) · spread_range. */
   TcVec spread_own, spread_range;
+  bool partial;
 } TcStretch;
 
 /* A value at both ends of a segment, and a bound on the integral of its error. */
@@ -196,7 +238,11 @@ TC_INLINE TcEnds tc_groups_ends(const unsigned on, const TcGroups *groups, int a
                                 const TcStretch *stretch) {
   const TcVec v0 = same ? tc_set(groups->near[at]) : tc_load(groups->near + at),
               v1 = same ? tc_set(groups->far[at]) : tc_load(groups->far + at);
-  TcEnds ends = {.near = tc_madd(stretch->from, v1 - v0, v0), .far = tc_madd(stretch->to - 1, v1 - v0, v1)};
+  TcEnds ends = {.near = v0, .far = v1};
+  if (TC_UNLIKELY(stretch->partial)) {
+    ends.near = tc_madd(stretch->from, v1 - v0, v0);
+    ends.far = tc_madd(stretch->to - 1, v1 - v0, v1);
+  }
   if (on & TC_BOUND) {
     const TcVec range = (same ? tc_set(groups->range[at]) : tc_load(groups->range + at)) + tc_abs(v1 - v0);
     ends.spread = tc_madd(tc_max(tc_abs(v0), tc_abs(v1)) + range, stretch->spread_own, range * stretch->spread_range);
@@ -316,6 +362,7 @@ TC_NOINLINE void tc_groups_ray_by_ray(const unsigned on, const TcCoefficients *c
                            .length = tc_set(TC_AT(all->length, l)),
                            .from = tc_set(TC_AT(all->from, l)),
                            .to = tc_set(TC_AT(all->to, l)),
+                           .partial = all->partial,
                            .spread_own = on & TC_BOUND ? tc_set(TC_AT(all->spread_own, l)) : tc_set(0),
                            .spread_range = on & TC_BOUND ? tc_set(TC_AT(all->spread_range, l)) : tc_set(0)};
     tc_groups_of_ray(on, c, groups, l, &ray);
@@ -325,19 +372,26 @@ TC_NOINLINE void tc_groups_ray_by_ray(const unsigned on, const TcCoefficients *c
 TC_INLINE void tc_groups_segment(const unsigned on, const TcGatherJob *job, TcGroups *groups, TcMask mask,
                                  const TcPassage *passage) {
   const TcCoefficients *c = job->coefficients;
-  tc_groups_at(on, c, groups, passage->crossed, passage->walk, groups->far);
+  if (c->points && groups->by_rays) {
+    tc_groups_at_rays(on, c->points, groups, passage->crossed, passage->walk, groups->far);
+  } else if (c->points) {
+    tc_groups_hold(c->points, groups, passage->crossed, passage->walk);
+    tc_groups_at_lanes(on, c->points, groups, passage->walk, groups->far);
+  }
   if (c->cells)
     tc_groups_in(c, groups, mask, passage->cell);
   tc_length_segment(on, job, &groups->length, mask, passage);
-  TcStretch all = {.mask = mask, .length = passage->length, .from = tc_set(0), .to = tc_set(1)};
-  if (TC_UNLIKELY(passage->partial))
-    all.from = passage->from, all.to = passage->to;
-  if (on & TC_BOUND) {
-    all.spread_own = passage->length * job->rounding;
-    all.spread_range = passage->spread;
-  }
+  TcStretch all;
+  all.mask = mask;
+  all.length = passage->length;
+  all.from = passage->from;
+  all.to = passage->to;
+  all.partial = passage->partial;
+  all.spread_own = on & TC_BOUND ? passage->length * job->rounding : tc_set(0);
+  all.spread_range = on & TC_BOUND ? passage->spread : tc_set(0);
   if (groups->by_rays) {
-    tc_groups_ray_by_ray(on, c, groups, mask, &all);
+    const TcStretch stored = all; /* what is called takes it from memory, what is inlined from registers */
+    tc_groups_ray_by_ray(on, c, groups, mask, &stored);
   } else {
     tc_groups_by_group(on, c, groups, &all);
   }

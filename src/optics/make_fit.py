@@ -4,13 +4,12 @@
 
 With T the optical depth of a segment, d half the difference of the extinctions at its ends times its length, |d| <= T, and h = T/2:
 
-  g(h)   = exp(-h) - 1, as h times a polynomial
+  g(h)   = exp(-h) - 1, as h times a polynomial, which is -1 at 0
   K(x,d) = exp(h) (w1 - w0), x = T^2: the difference of the two ends' weights
-  P(x,d) = exp(h) (m0 + m1): the sum of the two moments, Psi
-  Q(x,d) = exp(h) (m0 - m1) / T
+  Q(x,d) = exp(h) (m0 - m1) / T, of the two moments
 
-as polynomials in x and d. From these alpha = -g (2 + g), w1 - w0 = (1 + g) K, m0 and m1 = (1 + g) (P +- T Q) / 2 follow. Errors of K are relative to
-T, as both weights are at least T/3 nearly; those of P and T Q are absolute, as both moments are about 1/2. Terms that the error allows to leave out are
+as polynomials in x and d. From these alpha = -g (2 + g), w1 - w0 = (1 + g) K, and the moments (segment_lanes.h) follow. Errors of K are relative to
+T, as both weights are at least T/3 nearly; that of T Q is absolute, as both moments are about 1/2. Terms that the error allows to leave out are
 left out. Needs mpmath; takes a minute.
 """
 import mpmath as mp
@@ -19,31 +18,25 @@ mp.mp.dps = 40
 
 
 def integrals(t, d):
-    """exp(d/4) times the integrals 1/2 int cosh(t v/2) E, 1/2 int v^2 cosh(t v/2) E, 1/2 int v sinh(t v/2)/t E over [-1, 1], E = exp(-d v^2/4), by
-    their series."""
+    """exp(d/4) times the integrals 1/2 int v^2 cosh(t v/2) E and 1/2 int v sinh(t v/2)/t E over [-1, 1], E = exp(-d v^2/4), by their series."""
     x, y = t * t / 4, -d / 4
-    p = a = b = mp.mpf(0)
+    a = b = mp.mpf(0)
     for i in range(18):
         for j in range(26):
             term = x**i * y**j / mp.factorial(j)
-            p += term / (mp.factorial(2 * i) * (2 * i + 2 * j + 1))
             a += term / (mp.factorial(2 * i) * (2 * i + 2 * j + 3))
             b += term / (2 * mp.factorial(2 * i + 1) * (2 * i + 2 * j + 3))
     e = mp.exp(d / 4)
-    return e * p, e * a, e * b
+    return e * a, e * b
 
 
 def K(t, d):
-    _, a, b = integrals(t, d)
+    a, b = integrals(t, d)
     return d * a - t * t * b
 
 
-def P(t, d):
-    return integrals(t, d)[0]
-
-
 def Q(t, d):
-    return integrals(t, d)[2]
+    return integrals(t, d)[1]
 
 
 def node(k, n):
@@ -84,8 +77,8 @@ def fit(function, weight, most, degree, target):
 
 def fit_g(most, count):
     hs = [most * (1 + node(k, 24)) / 2 for k in range(24)]
-    found = least_squares([[(h / most) ** k for k in range(count)] for h in hs], [mp.expm1(-h) / h for h in hs])
-    c = [mp.mpf(float(found[k] / most**k)) for k in range(count)]
+    found = least_squares([[(h / most) ** k for k in range(1, count)] for h in hs], [mp.expm1(-h) / h + 1 for h in hs])
+    c = [mp.mpf(-1)] + [mp.mpf(float(found[k - 1] / most**k)) for k in range(1, count)]
     return c, max(abs(sum(c[k] * h**k for k in range(count)) * h / mp.expm1(-h) - 1) for h in (most * mp.mpf(k) / 50 for k in range(1, 51)))
 
 
@@ -110,12 +103,10 @@ print('/* Made by make_fit.py: coefficients of g, of rising powers of h; for eac
 print('#ifndef TC_OPTICS_SEGMENT_FIT_H\n#define TC_OPTICS_SEGMENT_FIT_H')
 write_g(0.5, 5, 'SINGLE')
 write(K, 1, 0.5, 5, '3e-8', 'SINGLE')
-for most, g_count, k_degree, p_degree, q_degree, name in ((0.0625, 6, 6, 6, 5, '16TH'), (0.25, 8, 8, 8, 7, '4TH'), (0.5, 9, 10, None, None, 'HALF'),
-                                                          (1, 11, None, 12, 11, 'ONE')):
+for most, g_count, k_degree, q_degree, name in ((0.0625, 6, 6, 5, '16TH'), (0.25, 8, 8, 7, '4TH'), (0.5, 9, 10, None, 'HALF'), (1, 11, None, 11, 'ONE')):
     write_g(most, g_count, name)
     if k_degree:
         write(K, 1, most, k_degree, '1e-15', name)
-    if p_degree:
-        write(P, 0, most, p_degree, '3e-16', name)
+    if q_degree:
         write(Q, -1, most, q_degree, '3e-16', name)
 print('\n#endif')

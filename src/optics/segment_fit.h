@@ -4,8 +4,8 @@
 #ifndef TC_OPTICS_SEGMENT_FIT_H
 #define TC_OPTICS_SEGMENT_FIT_H
 
-/* T <= 0.5: off by at most 2.7e-09 g. */
-#define TC_FIT_G_SINGLE -0x1.ffffffeb5c43fp-1, 0x1.ffffdf9f8ab68p-2, -0x1.554d30e8d889cp-3, 0x1.53e4f0158fc16p-5, -0x1.ec750e8057facp-8
+/* T <= 0.5: off by at most 3.0e-09 g. */
+#define TC_FIT_G_SINGLE -0x1.0000000000000p+0, 0x1.ffffe8391913cp-2, -0x1.554e2895a96ddp-3, 0x1.53f993d1a2c22p-5, -0x1.ed9a98f32d5b3p-8
 
 /* T <= 0.5: off by at most 2.5e-08 T. */
 #define TC_FIT_K_SINGLE(ROW) \
@@ -15,8 +15,8 @@
   ROW(0x1.55555557a4948p-2, 0x1.1110f9e209328p-7, 0x1.30b1f025b03c0p-14) \
   ROW(0x0.0p+0, -0x1.5555555e2f8e7p-3, -0x1.1110122b00530p-8, -0x1.3a94416f3f2d9p-15)
 
-/* T <= 0.0625: off by at most 1.1e-16 g. */
-#define TC_FIT_G_16TH -0x1.fffffffffffffp-1, 0x1.ffffffffff18dp-2, -0x1.55555552b2b3bp-3, 0x1.55554fb50d664p-5, -0x1.110ba281ece3dp-7, 0x1.673fa5648b609p-10
+/* T <= 0.0625: off by at most 1.0e-16 g. */
+#define TC_FIT_G_16TH -0x1.0000000000000p+0, 0x1.ffffffffff590p-2, -0x1.555555530c939p-3, 0x1.5555501bc42d5p-5, -0x1.110bd5dd50681p-7, 0x1.67525242ea037p-10
 
 /* T <= 0.0625: off by at most 2.2e-16 T. */
 #define TC_FIT_K_16TH(ROW) \
@@ -28,15 +28,6 @@
   ROW(0x1.5555555555555p-2, 0x1.11111111c84b5p-7, 0x1.38126a27b39f6p-14, 0x1.1a41decfdc1a6p-21) \
   ROW(0x0.0p+0, -0x1.5555555555579p-3, -0x1.1111110ead3bdp-8, -0x1.3815fb4183d2ep-15)
 
-/* T <= 0.0625: off by at most 2.4e-16. */
-#define TC_FIT_P_16TH(ROW) \
-  ROW(0x1.938271ac4722ap-19) \
-  ROW(0x1.1566abbcc9abap-14, 0x1.f09f9198c17d2p-21) \
-  ROW(0x1.381381336aec9p-10, 0x1.15695be7fbf0ap-16) \
-  ROW(0x1.1111111111136p-6, 0x1.38138135430a1p-12, 0x1.0cae051d9be2bp-19) \
-  ROW(0x1.555555555558bp-3, 0x1.1111110e4d2b8p-8, 0x1.38161a48c716ap-15) \
-  ROW(0x1.0000000000000p+0, 0x1.5555555555569p-5, 0x1.1111110f629fdp-11, 0x1.a098f94c37362p-19)
-
 /* T <= 0.0625: off by at most 8.6e-18 / T. */
 #define TC_FIT_Q_16TH(ROW) \
   ROW(0x1.f09fc9482e38ap-24) \
@@ -46,8 +37,8 @@
   ROW(0x1.1111111111133p-6, 0x1.3813813562b00p-12, 0x1.1568cbf46c6bfp-19) \
   ROW(0x1.5555555555555p-3, 0x1.111111119c940p-8, 0x1.3812bfc3cb707p-15, 0x1.f09e7507b34ccp-23)
 
-/* T <= 0.25: off by at most 1.2e-17 g. */
-#define TC_FIT_G_4TH -0x1.0000000000000p+0, 0x1.fffffffffffa8p-2, -0x1.555555554e205p-3, 0x1.5555554e1da7dp-5, -0x1.11110d83e8c4bp-7, 0x1.6c14db14d3638p-10, -0x1.9f8998213b619p-13, 0x1.89a94754714bep-16
+/* T <= 0.25: off by at most 6.9e-18 g. */
+#define TC_FIT_G_4TH -0x1.0000000000000p+0, 0x1.fffffffffffc2p-2, -0x1.555555554f348p-3, 0x1.5555554ec2142p-5, -0x1.11110db6264dbp-7, 0x1.6c14eb860e326p-10, -0x1.9f8c55ab0888ep-13, 0x1.89d80c3ffc728p-16
 
 /* T <= 0.25: off by at most 7.3e-16 T. */
 #define TC_FIT_K_4TH(ROW) \
@@ -60,17 +51,6 @@
   ROW(0x1.5555555555554p-2, 0x1.111111111825cp-7, 0x1.381380026c40dp-14, 0x1.71fecda745bb8p-22) \
   ROW(0x0.0p+0, -0x1.555555555554dp-3, -0x1.111111111f87fp-8, -0x1.381381dbebd89p-15, -0x1.71db7a7fc4735p-23)
 
-/* T <= 0.25: off by at most 7.4e-17. */
-#define TC_FIT_P_4TH(ROW) \
-  ROW(0x1.08ff624728f34p-28) \
-  ROW(0x1.f0e7048d29fb3p-24) \
-  ROW(0x1.937e0d4045b72p-19, 0x1.f0da013408551p-26) \
-  ROW(0x1.1566abc028440p-14, 0x1.936fd47d22c6fp-21, 0x1.69696d8c73116p-28) \
-  ROW(0x1.3813813835055p-10, 0x1.1566a99a9b986p-16, 0x1.93acb1f04f51ep-24) \
-  ROW(0x1.1111111111108p-6, 0x1.3813813825549p-12, 0x1.1567ffb21b962p-19, 0x1.ee1d424eb4742p-28) \
-  ROW(0x1.5555555555548p-3, 0x1.1111111122943p-8, 0x1.38137f5fab63bp-15, 0x1.72048e0e911d8p-23) \
-  ROW(0x1.0000000000000p+0, 0x1.5555555555551p-5, 0x1.111111111a898p-11, 0x1.a019ecea113b4p-19, 0x1.733ea7dbb9128p-27)
-
 /* T <= 0.25: off by at most 1.3e-16 / T. */
 #define TC_FIT_Q_4TH(ROW) \
   ROW(0x1.08fe9d9d7a253p-28) \
@@ -81,8 +61,8 @@
   ROW(0x1.1111111111109p-6, 0x1.38138138244d3p-12, 0x1.1567637879456p-19, 0x1.010aa31039a07p-27) \
   ROW(0x1.555555555554ap-3, 0x1.1111111121b5bp-8, 0x1.38137f68bbe49p-15, 0x1.72044f6ddf120p-23)
 
-/* T <= 0.5: off by at most 1.4e-17 g. */
-#define TC_FIT_G_HALF -0x1.0000000000000p+0, 0x1.fffffffffffacp-2, -0x1.5555555550f0fp-3, 0x1.55555552824d6p-5, -0x1.11111027feb03p-7, 0x1.6c166ceaed84dp-10, -0x1.a007f8eed9944p-13, 0x1.9dd979ee38ffbp-16, -0x1.4aa6ca8edf738p-19
+/* T <= 0.5: off by at most 1.2e-17 g. */
+#define TC_FIT_G_HALF -0x1.0000000000000p+0, 0x1.fffffffffffc5p-2, -0x1.55555555519f5p-3, 0x1.55555552c6cecp-5, -0x1.11111036444f3p-7, 0x1.6c16704a82d07p-10, -0x1.a0086d2f414bbp-13, 0x1.9de1c7ac7cf5ep-16, -0x1.4ae5502775bffp-19
 
 /* T <= 0.5: off by at most 5.0e-16 T. */
 #define TC_FIT_K_HALF(ROW) \
@@ -97,20 +77,7 @@
   ROW(0x0.0p+0, -0x1.5555555555556p-3, -0x1.111111110c4bcp-8, -0x1.381381688ca1ep-15, -0x1.71dd084209269p-23, -0x1.0f7be1b775a74p-31)
 
 /* T <= 1: off by at most 1.3e-17 g. */
-#define TC_FIT_G_ONE -0x1.0000000000000p+0, 0x1.ffffffffffffdp-2, -0x1.5555555555333p-3, 0x1.5555555544a35p-5, -0x1.1111110ce0f08p-7, 0x1.6c16c0320492cp-10, -0x1.a019c830111d0p-13, 0x1.a0133eb630bd7p-16, -0x1.715acddad0794p-19, 0x1.21a5c3a62163bp-22, -0x1.56b847fbfa7cdp-26
-
-/* T <= 1: off by at most 1.7e-16. */
-#define TC_FIT_P_ONE(ROW) \
-  ROW(0x1.a6c896a69f8c2p-39) \
-  ROW(0x1.f28afa26fb723p-34, 0x1.058257b92201fp-40) \
-  ROW(0x1.08d98fd932d16p-28, 0x1.f5de338d63584p-36) \
-  ROW(0x1.f09b2a49f2a53p-24, 0x1.08d9fefb4fe9dp-30, 0x1.df711eeadacd6p-39) \
-  ROW(0x1.937e1116f9fd0p-19, 0x1.f09beb00d401ap-26, 0x1.08059e3e56663p-33, 0x1.1c3fd62c3d784p-41) \
-  ROW(0x1.1566abbfb5835p-14, 0x1.937e121814885p-21, 0x1.f0990f7a13a15p-29, 0x1.65081fa0cd222p-37) \
-  ROW(0x1.3813813813972p-10, 0x1.1566abbfe0bf7p-16, 0x1.937df9964fe2ep-24, 0x1.4b486a33298c6p-32, 0x1.23e8b86c6451cp-41) \
-  ROW(0x1.1111111111111p-6, 0x1.381381382a838p-12, 0x1.1566ab7401da7p-19, 0x1.0cff685af40cdp-27, 0x1.499014a888306p-36, 0x1.0ca29f0384b59p-44) \
-  ROW(0x1.5555555555555p-3, 0x1.11111111111a8p-8, 0x1.38138137f05d0p-15, 0x1.71de3c4d36911p-23, 0x1.0cfa6cf054540p-31, 0x1.0e213d3eda7f7p-40) \
-  ROW(0x1.0000000000000p+0, 0x1.5555555555555p-5, 0x1.111111110fa5fp-11, 0x1.a01a01a9f983dp-19, 0x1.71de227ef06d6p-27, 0x1.ae9517286b6a9p-36, 0x1.3ed2ceacfa4ffp-45)
+#define TC_FIT_G_ONE -0x1.0000000000000p+0, 0x1.ffffffffffffep-2, -0x1.555555555538cp-3, 0x1.55555555465c6p-5, -0x1.1111110d2bfb4p-7, 0x1.6c16c0415e0a6p-10, -0x1.a019ca27d83eep-13, 0x1.a013677e6306cp-16, -0x1.715cd406b8d14p-19, 0x1.21b4286c959ccp-22, -0x1.5710039108095p-26
 
 /* T <= 1: off by at most 2.1e-17 / T. */
 #define TC_FIT_Q_ONE(ROW) \

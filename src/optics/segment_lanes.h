@@ -29,11 +29,14 @@ typedef struct TcSegments {
     FIT(TC_FIT_ROW)                                                                                                    \
     return sum;                                                                                                        \
   }
-/* e^−h − 1 */
+/* (e^−h − 1) / h, and e^−h − 1 */
 #define TC_FIT_G(name, ...)                                                                                            \
-  TC_INLINE TcVec name(TcVec h) {                                                                                      \
+  TC_INLINE TcVec name##_slope(TcVec h) {                                                                              \
     static const double c[] = {__VA_ARGS__};                                                                           \
-    return h * tc_polynomial(h, c, sizeof c / sizeof *c);                                                              \
+    return tc_polynomial(h, c, sizeof c / sizeof *c);                                                                  \
+  }                                                                                                                    \
+  TC_INLINE TcVec name(TcVec h) {                                                                                      \
+    return h * name##_slope(h);                                                                                        \
   }
 
 /* α = −g (2 + g), w₁ − w₀ = (1 + g) K. */
@@ -155,12 +158,19 @@ typedef struct TcLaneMoments {
   TcVec m0, m1, transmittance;
 } TcLaneMoments;
 
+/* As a m₀ + a₁ m₁ = 1 − e^−t and m₀ − m₁ = t (1 + g) Q, with g = e^(−t/2) − 1, both moments follow from one polynomial
+ * beside g: with s = (1 − e^−t) / 2t = −g (2 + g) / 2t and r = (1 + g) Q / 2
+ *
+ *     m₀ = s + a₁ r,   m₁ = s − a r.
+ *
+ * Up to t = 1, s is at most 1.8 times m₁, where it is that at a = 2, a₁ = 0. */
 #define TC_FIT_MOMENTS(name, FIT)                                                                                      \
-  TC_FIT(tc_p_##name, TC_FIT_P_##FIT)                                                                                  \
   TC_FIT(tc_q_##name, TC_FIT_Q_##FIT)                                                                                  \
-  TC_INLINE TcLaneMoments tc_moments_##name(TcVec t, TcVec d, TcVec g) {                                               \
-    const TcVec x = t * t, p = tc_p_##name(x, d), q = t * tc_q_##name(x, d), half = 0.5 * g + 0.5;                     \
-    return (TcLaneMoments){half * (p + q), half * (p - q), tc_madd(g, g, 2 * g) + 1};                                  \
+  TC_INLINE TcLaneMoments tc_moments_##name(TcVec t, TcVec d, TcVec a, TcVec a1) {                                     \
+    const TcVec slope = tc_g_##name##_slope(0.5 * t), g = 0.5 * t * slope;                                             \
+    const TcVec half = tc_madd(tc_set(0.5), g, tc_set(0.5)), r = half * tc_q_##name(t * t, d);                         \
+    const TcVec s = -0.5 * slope * (half + 0.5);                                                                       \
+    return (TcLaneMoments){tc_madd(a1, r, s), tc_madd(-a, r, s), tc_madd(g, g, 2 * g) + 1};                            \
   }
 TC_FIT_MOMENTS(16th, 16TH)
 TC_FIT_MOMENTS(4th, 4TH)
@@ -186,8 +196,8 @@ TC_NOINLINE void tc_moments_deep(TcMask mask, const TcVec *near, const TcVec *fa
   const TcMask thick = tc_and(mask, tc_gt(t, one)), others = tc_and_not(mask, thick);
   TcLaneMoments m = {tc_set(0.5), tc_set(0.5), one};
   if (tc_any(others)) {
-    const TcVec shallow = tc_select(thick, tc_set(0), t);
-    m = tc_moments_one(shallow, tc_select(thick, tc_set(0), 0.5 * a1 - 0.5 * a), tc_g_one(0.5 * shallow));
+    const TcVec zero = tc_set(0), near_end = tc_select(thick, zero, a), far_end = tc_select(thick, zero, a1);
+    m = tc_moments_one(0.5 * near_end + 0.5 * far_end, 0.5 * far_end - 0.5 * near_end, near_end, far_end);
   }
   if (tc_any(thick)) {
     const TcLaneMoments deep = tc_moments_thick(tc_select(thick, a, one), tc_select(thick, a1, one));
@@ -203,9 +213,9 @@ TC_NOINLINE void tc_moments_deep(TcMask mask, const TcVec *near, const TcVec *fa
 TC_INLINE TcLaneMoments tc_moments(TcMask mask, TcVec a, TcVec a1) {
   const TcVec t = 0.5 * a + 0.5 * a1, d = 0.5 * a1 - 0.5 * a;
   if (TC_LIKELY(!tc_any(tc_gt(t, tc_set(0x1p-4)))))
-    return tc_moments_16th(t, d, tc_g_16th(0.5 * t));
+    return tc_moments_16th(t, d, a, a1);
   if (TC_LIKELY(!tc_any(tc_gt(t, tc_set(0x1p-2)))))
-    return tc_moments_4th(t, d, tc_g_4th(0.5 * t));
+    return tc_moments_4th(t, d, a, a1);
   const TcVec near = a, far = a1;
   TcLaneMoments result;
   tc_moments_deep(mask, &near, &far, &result);
