@@ -267,6 +267,8 @@ TetcastStatus design_find(TetcastContext *context, const TetcastMesh *mesh, cons
   else
     tetcast_field_range(field, data.range, NULL);
   TetcastStatus status = find_map(&data, desc, design);
+  if (!(design->map.range[0] > 0)) /* as where all values above 0 are too small to be told apart by their logarithm */
+    design->map.logarithmic = false;
   if (status == TETCAST_OK && design->map.range[0] < design->map.range[1]) {
     status = share_map(&data, &design->map, share);
     set_knots(design, share);

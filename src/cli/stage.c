@@ -326,17 +326,26 @@ DesignDesc stage_design_desc(const Stage *stage, const RenderOptions *options) {
 }
 
 /* Finds the values at shares of the volume, and the transfer function but for its colours, while the field is there. */
-static TetcastStatus find_design(Stage *stage, const RenderOptions *options, bool designed) {
+static int find_design(Stage *stage, const RenderOptions *options, bool designed) {
   const StageOthers *others = stage->others;
+  const double *found = stage->quantiles;
   TetcastStatus status = TETCAST_OK;
-  if (render_options_range(options) == RANGE_QUANTILES)
+  if (render_options_range(options) == RANGE_QUANTILES) {
     status = others ? others->quantiles(others->ranks, stage->range, options->range, 2, stage->quantiles)
                     : tetcast_statistics_quantiles(stage->context, stage->mesh, stage->field, options->range, 2,
                                                    stage->quantiles);
-  if (status != TETCAST_OK || !designed)
-    return status;
-  const DesignDesc desc = stage_design_desc(stage, options);
-  return design_find(stage->context, stage->mesh, stage->field, &desc, &stage->design);
+    if (status == TETCAST_OK && options->logarithmic && !stage->transfer_function && !(found[0] > 0)) {
+      cli_error("--log: the --range of %g%% to %g%% goes from %g to %g in array %s, and only values above 0 have a "
+                "logarithm",
+                100 * options->range[0], 100 * options->range[1], found[0], found[1], stage->array);
+      return CLI_FAILED;
+    }
+  }
+  if (status == TETCAST_OK && designed) {
+    const DesignDesc desc = stage_design_desc(stage, options);
+    status = design_find(stage->context, stage->mesh, stage->field, &desc, &stage->design);
+  }
+  return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }
 
 /* The colours of a design over [0, 1]: of two sides where values have two. */
@@ -487,11 +496,10 @@ int stage_complete(Stage *stage, const RenderOptions *options) {
     return CLI_FAILED;
   const bool designed = is_designed(stage, options);
   stage->designed = designed || (stage->designed && stage->transfer_function); /* which an earlier step has left */
-  TetcastStatus status = TETCAST_OK;
   const StageOthers *others = stage->others;
+  int code = CLI_DONE;
   if (!render_options_direct(options) && (!others || others->first))
-    status = find_design(stage, options, designed);
-  int code = status == TETCAST_OK ? CLI_DONE : cli_failed(status);
+    code = find_design(stage, options, designed);
   if (others)
     code = others->meet(others->ranks, code);
   if (code != CLI_DONE)

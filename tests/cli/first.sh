@@ -78,6 +78,16 @@ refuse 2 '--range must be above 0' render cube.vtu -o no.png --array s --log --r
 refuse 2 'exclude each other' render cube.vtu -o no.png --log --centre 1
 refuse 2 'exclude each other' render cube.vtu -o no.png --log --transfer t.json
 accept render constant.vtu -o a.png $size --log
+# A logarithmic map never begins at 0: neither by shares of the volume, whose values the range hasn't, nor where twelve decades below the largest value
+# there is no number.
+scalar='0 0 0 0 0 0 0 1' vtu zeros.vtu "$five_tetrahedra" 10
+scalar='0 0 0 0 0 0 0 1e-320' vtu tiny.vtu "$five_tetrahedra" 10
+refuse 1 'the --range of 0% to 90% goes from 0 to ' render zeros.vtu -o no.png --array s --log --range 0%,90%
+refuse 1 'the --range of 0% to 90% goes from 0 to ' transfer zeros.vtu -o no.json --array s --log --range 0%,90%
+warn 'values down to -3' render signed.vtu -o a.png $size --log --range 90%,100% --stats s.json
+states s.json '"scale":"logarithmic"'
+accept render tiny.vtu -o a.png $size --log --stats s.json
+states s.json '"scale":"linear"'
 
 # A colour map by its name alone keeps what is found from the values; a range is taken at its word.
 accept render cube.vtu -o a.ppm $size --bare --preset inferno
