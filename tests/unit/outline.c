@@ -176,6 +176,50 @@ static void edges_of_the_box_lie_where_they_should(void **state) {
   world_end(&world);
 }
 
+/* Over pixels of which no two are alike, nor two numbers of one, in rows of the caller's own with room between them. */
+static void an_outline_keeps_the_colours_that_are_there(void **state) {
+  (void)state;
+  enum { ROW = 4 * W + 3 };
+  static const double color[3] = {1, 0.25, 0};
+  static double before[H * ROW], after[H * ROW];
+  static float single[H * ROW];
+  const TetcastCamera camera = camera_of(2.1, 1.7, 3.3, 0.5, 0.5, 0.5);
+  World world;
+  world_begin(&world, 2, 0, 1, TETCAST_TRAVERSAL_SHELL);
+  uint32_t random = 1;
+  for (int i = 0; i < H * ROW; ++i) {
+    random = random * 1664525u + 1013904223u;
+    single[i] = (float)(random >> 8) / 0x1p24f;
+    before[i] = after[i] = (double)single[i];
+  }
+  for (int wide = 0; wide < 2; ++wide) {
+    TetcastFrameDesc desc = tetcast_frame_desc_default();
+    desc.width = W;
+    desc.height = H;
+    desc.type = wide ? TETCAST_TYPE_FLOAT64 : TETCAST_TYPE_FLOAT32;
+    desc.pixels = wide ? (void *)after : (void *)single;
+    desc.row_stride = ROW * (int64_t)(wide ? sizeof *after : sizeof *single);
+    TetcastFrame *frame = NULL;
+    assert_int_equal(tetcast_frame_create(world.fixture.context, &desc, &frame), TETCAST_OK);
+    assert_int_equal(tetcast_scene_draw_outline(world.scene, &camera, NULL, color, frame), TETCAST_OK);
+    tetcast_frame_destroy(&frame);
+  }
+  Near *near = find_near(&camera);
+  int met = 0;
+  for (int p = 0; p < PIXELS; ++p) {
+    const int at = p / W * ROW + 4 * (p % W);
+    met += check_pixel(before + at, after + at, near + 12 * p, color, INFINITY);
+  }
+  assert_true(met > 100);
+  for (int i = 0; i < H * ROW; ++i) {
+    assert_true(fabs(after[i] - (double)single[i]) < 1e-6);
+    if (i % ROW >= 4 * W)
+      assert_true(after[i] == before[i]); /* nothing is drawn between rows */
+  }
+  free(near);
+  world_end(&world);
+}
+
 static void an_outline_goes_with_other_kinds_of_scene(void **state) {
   (void)state;
   static const double color[3] = {0, 0, 1};
@@ -270,6 +314,7 @@ static void edges_of_triangles_are_a_pixel_wide(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(edges_of_the_box_lie_where_they_should),
+      cmocka_unit_test(an_outline_keeps_the_colours_that_are_there),
       cmocka_unit_test(an_outline_goes_with_other_kinds_of_scene),
       cmocka_unit_test(edges_of_triangles_are_a_pixel_wide),
   };
