@@ -1253,9 +1253,18 @@ module tetcast
     module procedure array_float32_columns, array_float64_columns, array_int32_columns, array_int64_columns
   end interface
 
+  ! tetcast_make_mesh(context, vertices, tetrahedra, mesh): a mesh of tetrahedra (4 × m) that count vertices from 1, copied
+  ! unless told otherwise by `ownership`. Vertices are one view (3 × n) or [x, y, z], three views of n numbers:
+  ! tetcast_make_mesh(context, [tetcast_array(x), tetcast_array(y), tetcast_array(z)], tetcast_array(cells), mesh).
+  ! `hidden` has m numbers, next to each other, of the ownership of the others: cells whose number has any of `hidden_bits`
+  ! are left out, by default those whose number isn't 0.
+  interface tetcast_make_mesh
+    module procedure mesh_of_vertices, mesh_of_coordinates
+  end interface
+
   private :: array_float32, array_float64, array_int32, array_int64
   private :: array_float32_columns, array_float64_columns, array_int32_columns, array_int64_columns
-  private :: view_of, bytes_between, error_unit
+  private :: mesh_of_vertices, mesh_of_coordinates, mesh_of, view_of, bytes_between, error_unit
 
 contains
 
@@ -1307,20 +1316,60 @@ contains
 
   ! ── objects from arrays ──
 
-  ! A mesh of vertices (3 × n) and tetrahedra (4 × m) that count vertices from 1, copied unless told otherwise:
-  ! tetcast_make_mesh(context, tetcast_array(x), tetcast_array(cells), mesh).
-  function tetcast_make_mesh(context, vertices, tetrahedra, mesh, ownership) result(status)
+  function mesh_of_vertices(context, vertices, tetrahedra, mesh, ownership, hidden, hidden_bits) result(status)
     type(c_ptr), intent(in) :: context
     type(TetcastArray), intent(in) :: vertices, tetrahedra
     type(c_ptr), intent(out) :: mesh
     integer(c_int), intent(in), optional :: ownership
+    integer(c_int8_t), intent(in), target, optional :: hidden(:)
+    integer(c_int8_t), intent(in), optional :: hidden_bits
     integer(c_int) :: status
     type(TetcastMeshDesc) :: desc
     desc = tetcast_mesh_desc_default()
     desc%vertices = vertices
+    status = mesh_of(context, desc, tetrahedra, mesh, ownership, hidden, hidden_bits)
+  end function
+
+  function mesh_of_coordinates(context, coordinates, tetrahedra, mesh, ownership, hidden, hidden_bits) result(status)
+    type(c_ptr), intent(in) :: context
+    type(TetcastArray), intent(in) :: coordinates(3), tetrahedra
+    type(c_ptr), intent(out) :: mesh
+    integer(c_int), intent(in), optional :: ownership
+    integer(c_int8_t), intent(in), target, optional :: hidden(:)
+    integer(c_int8_t), intent(in), optional :: hidden_bits
+    integer(c_int) :: status
+    type(TetcastMeshDesc) :: desc
+    desc = tetcast_mesh_desc_default()
+    desc%coordinates = coordinates
+    status = mesh_of(context, desc, tetrahedra, mesh, ownership, hidden, hidden_bits)
+  end function
+
+  ! The mesh of a desc that has the vertices.
+  function mesh_of(context, desc, tetrahedra, mesh, ownership, hidden, hidden_bits) result(status)
+    type(c_ptr), intent(in) :: context
+    type(TetcastMeshDesc), intent(inout) :: desc
+    type(TetcastArray), intent(in) :: tetrahedra
+    type(c_ptr), intent(out) :: mesh
+    integer(c_int), intent(in), optional :: ownership
+    integer(c_int8_t), intent(in), target, optional :: hidden(:)
+    integer(c_int8_t), intent(in), optional :: hidden_bits
+    integer(c_int) :: status
+    mesh = c_null_ptr
     desc%tetrahedra = tetrahedra
     desc%index_base = 1
     if (present(ownership)) desc%ownership = ownership
+    if (present(hidden)) then
+      status = tetcast_error_argument
+      if (size(hidden, 1, c_int64_t) /= tetrahedra%count) return
+      if (size(hidden) > 1) then
+        if (bytes_between(c_loc(hidden(1)), c_loc(hidden(2))) /= 1) return
+      end if
+      if (size(hidden) > 0) then
+        desc%hidden = c_loc(hidden(1))
+        desc%hidden_bits = -1 ! all of them
+        if (present(hidden_bits)) desc%hidden_bits = hidden_bits
+      end if
+    end if
     status = tetcast_mesh_create(context, desc, mesh)
   end function
 
