@@ -113,7 +113,7 @@ bool tc_fragments_tile(const TcRender *render, int64_t x0, int64_t y0, int64_t x
     f->pixel = y * render->job.width + x;
     f->begin = f->begin * scale[0] * scale[1];
     f->end = f->end * scale[0] * scale[1];
-    ++render->fragments->place[f->pixel];
+    ++render->fragments->place[f->pixel - render->fragments->first];
   }
   return !list->out_of_memory;
 }
@@ -123,10 +123,12 @@ static bool move_fragments(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   const TcRender *render = data;
   TetcastFragment *to = render->fragments->result->data;
+  int64_t *place = render->fragments->place;
+  const int64_t first = render->fragments->first;
   for (int64_t i = begin; i < end; ++i) {
     const TcFragmentList *list = &render->workers[i].worker.fragments;
     for (int64_t j = 0; j < list->count; ++j)
-      to[render->fragments->place[list->data[j].pixel]++] = list->data[j];
+      to[place[list->data[j].pixel - first]++] = list->data[j];
   }
   return true;
 }
@@ -142,13 +144,30 @@ static bool sort_pixels(void *data, int64_t begin, int64_t end, int worker) {
   return true;
 }
 
-void tc_fragments_lend(TcRender *render, int threads) {
+/* Makes room for the numbers of pixels that may have fragments: those of the rows of all tiles that reach into what is
+ * seen. Where a part is small on the screen, going through all of the others would take longer than its rays. */
+static bool make_places(const TcRender *render, struct TcFragmentWork *work) {
+  const double rows = (double)render->frame->height, *seen = work->seen[1];
+  const double from = fmin(fmax(floor(seen[0]) - (double)render->first_row - TC_TILE, 0), rows),
+               to = fmax(fmin(ceil(seen[1]) - (double)render->first_row + TC_TILE + 1, rows), from);
+  work->first = (int64_t)from * render->frame->width;
+  work->pixels = (int64_t)(to - from) * render->frame->width;
+  work->place = tc_allocate(render->scene->context, work->pixels + 1, sizeof *work->place); /* never none */
+  if (work->place)
+    memset(work->place, 0, (size_t)work->pixels * sizeof *work->place);
+  return work->place != NULL;
+}
+
+bool tc_fragments_lend(TcRender *render, int threads) {
   find_seen(render, render->fragments->seen);
+  if (!make_places(render, render->fragments))
+    return false;
   const TetcastFragments *result = render->fragments->result;
   for (int i = 0; i < threads && i < result->list_count; ++i) {
     render->workers[i].worker.fragments = result->lists[i];
     result->lists[i] = (TcFragmentList){.context = result->context};
   }
+  return true;
 }
 
 /* Keeps the workers' memory for the next picture; where there is no place to note it, workers free it. */
@@ -176,7 +195,7 @@ static void take_back(TcRender *render, int threads) {
 static TetcastStatus take_fragments(TcRender *render, int threads) {
   TetcastFragments *result = render->fragments->result;
   TetcastContext *context = result->context;
-  const int64_t pixels = render->frame->width * render->frame->height;
+  const int64_t pixels = render->fragments->pixels;
   int64_t count = 0;
   for (int64_t i = 0; i < pixels; ++i) {
     const int64_t of_pixel = render->fragments->place[i];
@@ -217,9 +236,6 @@ TetcastStatus tc_scene_render_fragments(const TetcastScene *scene, const Tetcast
       .context = scene->context, .width = width, .height = height, .type = TETCAST_TYPE_FLOAT64, .groups = 1};
   struct TcFragmentWork work = {.result = fragments};
   fragments->count = 0;
-  if (!tc_allocate_array(scene->context, (void **)&work.place, width * height, sizeof *work.place, "fragments"))
-    return TETCAST_ERROR_MEMORY;
-  memset(work.place, 0, (size_t)(width * height) * sizeof *work.place);
   const TetcastStatus status = tc_render(scene, camera, desc, &frame, &work, stats);
   tc_release(scene->context, work.place);
   return status;

@@ -16,8 +16,9 @@ struct TetcastFragments {
 /* The fragments of a picture that is being made. */
 struct TcFragmentWork {
   TetcastFragments *result;
-  int64_t *place;    /* [pixels]: how many fragments the pixel has, then where its next one goes */
-  double seen[2][2]; /* the columns, and the rows, of the picture, in which rays may meet the volume: from, to */
+  double seen[2][2];     /* the columns, and the rows, of the picture, in which rays may meet the volume: from, to */
+  int64_t first, pixels; /* those that may have fragments: so many from there on */
+  int64_t *place;        /* [pixels]: how many fragments the pixel has, then where its next one goes */
 };
 
 /* Puts a pixel's fragments into the one order in which they are composited. */
@@ -25,9 +26,9 @@ void tc_fragments_sort(TetcastFragment *fragments, int64_t count);
 
 /* Renders a tile: the worker's list grows by its fragments. False if memory has run out. */
 bool tc_fragments_tile(const TcRender *render, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorking *working);
-/* Before the first tile: finds where the part is to be seen, and lends the workers memory of the picture before, if
- * there is any. */
-void tc_fragments_lend(TcRender *render, int threads);
+/* Before the first tile: finds where the part is to be seen, makes room for what is noted of pixels there, and lends
+ * the workers memory of the picture before, if there is any. False if memory has run out. */
+bool tc_fragments_lend(TcRender *render, int threads);
 /* Once all tiles are rendered, with `status`: puts all workers' fragments together, pixel by pixel, and takes their
  * memory back. */
 TetcastStatus tc_fragments_take(TcRender *render, int threads, TetcastStatus status);

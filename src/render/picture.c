@@ -401,7 +401,7 @@ static TetcastStatus run(TcRender *render, const TetcastRenderDesc *desc, Tetcas
   }
   TetcastStatus status = TETCAST_OK;
   if (ok && render->fragments)
-    tc_fragments_lend(render, threads);
+    ok = tc_fragments_lend(render, threads);
   if (!ok)
     status = tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: workers");
   else if (desc->adaptive_coarse > 0)
