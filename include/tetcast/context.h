@@ -44,8 +44,9 @@ typedef void *TetcastAllocateFunction(void *user, size_t size, size_t alignment)
 typedef void TetcastReleaseFunction(void *user, void *memory);
 
 /* Called now and then during long work, on the thread that made the call and in its own floating-point environment,
- * with the fraction done in [0, 1], non-decreasing within one call, a thousand times at most. It must return, too.
- * Return false to cancel: the call then soon ends with TETCAST_ERROR_CANCELLED. */
+ * with the fraction done in [0, 1], non-decreasing within one call, a thousand times at most, and, but for each tenth,
+ * at most once a millisecond. It must return, too. Return false to cancel: the call then soon ends with
+ * TETCAST_ERROR_CANCELLED. */
 typedef bool TetcastProgressFunction(void *user, double fraction);
 
 /* Who is told how far long work has come. */

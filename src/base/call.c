@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#define _DEFAULT_SOURCE /* signal masks */
+#define _DEFAULT_SOURCE /* signal masks, the clock */
 #include "base/call.h"
 
 #include <signal.h>
+#include <time.h>
 
 /* As much as threads of TBB have, on which Embree builds: by that it decides how deep tasks may nest. */
 enum { STACK = 4 << 20 };
@@ -20,6 +21,7 @@ struct TcCall {
   TetcastStatus status;
   TetcastProgress progress; /* the host's */
   double reported;          /* fraction */
+  struct timespec when;     /* it was */
   pthread_mutex_t mutex;
   pthread_cond_t asked, answered;
   Request *request; /* NULL: none is waiting */
@@ -112,12 +114,20 @@ static bool tell(void *data) {
   return report->progress->function(report->progress->user, report->fraction);
 }
 
-/* Each time costs two changes of thread: a thousand times a call is often enough. */
+/* Each time costs two changes of thread: a thousand times a call is often enough. A call that takes less than a second,
+ * as one of many, has no time for that: once a millisecond is often enough, too, but each tenth is told, and the end.
+ */
 static bool report(void *user, double fraction) {
   TcCall *call = user;
   if (fraction < call->reported + 0.001)
     return true;
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  const double passed = difftime(now.tv_sec, call->when.tv_sec) + 1e-9 * (double)(now.tv_nsec - call->when.tv_nsec);
+  if (call->reported >= 0 && fraction < 1 && fraction < call->reported + 0.1 && passed < 1e-3)
+    return true;
   call->reported = fraction;
+  call->when = now;
   return tc_call_host(tell, &(Report){&call->progress, fraction});
 }
 

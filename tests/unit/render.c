@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Properties of whole pictures. */
+#define _DEFAULT_SOURCE /* the clock */
 #include "support.h"
 
 #include <pthread.h>
+#include <time.h>
 
 enum { W = 48, H = 36, VALUES = W * H * 4 };
 
@@ -434,6 +436,47 @@ static void cancelling(void **state) {
   world_end(&world);
 }
 
+static bool count_call(void *user, double fraction) {
+  (void)fraction;
+  ++*(int *)user;
+  return true;
+}
+
+static double milliseconds(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
+}
+
+/* Where a picture takes no time, nor does telling of its progress: the first time, ten tenths and the end, and once a
+ * millisecond. */
+static void short_pictures_have_little_to_tell(void **state) {
+  (void)state;
+  World world;
+  world_begin(&world, 2, 0.5, TETCAST_TRAVERSAL_SHELL, 1);
+  TetcastFrameDesc desc = tetcast_frame_desc_default();
+  desc.width = desc.height = 256;
+  TetcastFrame *frame = NULL;
+  TetcastScene *scene = NULL;
+  TetcastTransferFunction *transfer = transfer_of(world.fixture.context, 1);
+  assert_int_equal(tetcast_frame_create(world.fixture.context, &desc, &frame), TETCAST_OK);
+  assert_int_equal(tetcast_scene_create(world.fixture.context, world.body.volume, &scene), TETCAST_OK);
+  assert_int_equal(tetcast_scene_set_field(scene, world.body.field), TETCAST_OK);
+  assert_int_equal(tetcast_scene_set_transfer_function(scene, transfer), TETCAST_OK);
+  const TetcastCamera camera = camera_of(2.1, 1.7, 3.3, 30, 30, 30); /* which sees nothing */
+  TetcastRenderDesc render = tetcast_render_desc_default();
+  int calls = 0;
+  render.progress = (TetcastProgress){count_call, &calls};
+  const double begin = milliseconds();
+  for (int i = 0; i < 10; ++i)
+    assert_int_equal(tetcast_scene_render(scene, &camera, &render, frame, NULL), TETCAST_OK);
+  assert_true(calls >= 10 * 9 && calls <= 10 * 12 + (milliseconds() - begin));
+  tetcast_transfer_function_destroy(&transfer);
+  tetcast_scene_destroy(&scene);
+  tetcast_frame_destroy(&frame);
+  world_end(&world);
+}
+
 /* Two scenes of one volume, and one of another context, in three threads. */
 typedef struct Job {
   World *world;
@@ -478,6 +521,7 @@ int main(void) {
       cmocka_unit_test(nan_vertices_are_holes),
       cmocka_unit_test(samples_average),
       cmocka_unit_test(cancelling),
+      cmocka_unit_test(short_pictures_have_little_to_tell),
       cmocka_unit_test(scenes_in_threads),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
