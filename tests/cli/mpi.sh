@@ -78,6 +78,8 @@ done
 for ranks in 1 2 4; do
   fine $ranks whole.vtu $exact -o s$ranks.tif
 done
+same s1.tif s2.tif 'a file that is split, on 2 ranks'
+same s1.tif s4.tif 'a file that is split, on 4 ranks'
 near whole.tif s1.tif 5e-15 'a file that is split'
 near whole.tif s4.tif 5e-15 'a file that is split over 4 ranks'
 for view in '--eye 0.45,0.5,0.55 --target 1,0.3,0.2' '--ortho 0.4 --view +x' '--zoom 5 --azimuth 200'; do
