@@ -26,10 +26,11 @@ if [ ! -e "$root/etc/debian_version" ]; then
   debootstrap --variant=minbase "$release" "$root" "$mirror"
 fi
 
-# The system sees the processes and devices of this one, and a name server.
-mkdir -p "$root/proc" "$root/dev"
+# The system sees the processes, devices and processors of this one, the last of which MPI asks for, and a name server.
+mkdir -p "$root/proc" "$root/dev" "$root/sys"
 mount -t proc proc "$root/proc"
 mount --rbind /dev "$root/dev"
+mount --rbind -o ro /sys "$root/sys"
 cp -L /etc/resolv.conf "$root/etc/resolv.conf" 2>/dev/null || :
 cp -L /etc/hosts "$root/etc/hosts" 2>/dev/null || :
 
