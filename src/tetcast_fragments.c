@@ -22,7 +22,9 @@ void tetcast_fragments_destroy(TetcastFragments **fragments) {
 }
 
 TetcastFragmentList tetcast_fragments_list(const TetcastFragments *fragments) {
-  return (TetcastFragmentList){fragments->data, fragments->count};
+  const bool grouped = fragments->count > 0 && fragments->width > 0;
+  return (TetcastFragmentList){fragments->data, fragments->count, grouped ? fragments->groups : NULL,
+                               (int)(fragments->width / 2)};
 }
 
 /* Whether a part of a mesh has what the scene shows by itself. */
@@ -30,8 +32,7 @@ static TetcastStatus check_looks(const TetcastScene *scene, const TetcastRenderD
   TetcastContext *context = scene->context;
   const TcLighting *lighting = &scene->lighting;
   const bool lit = lighting->surfaces && scene->isosurface_count > 0;
-  const char *what = scene->coefficients           ? "coefficients"
-                     : scene->blend                ? "another blend mode than composite"
+  const char *what = scene->blend                  ? "another blend mode than composite"
                      : scene->boundary.opacity > 0 ? "the boundary, which a part has of its own"
                      : tc_scene_is_lit(scene)      ? "light in the volume"
                      : lit && (lighting->shadows || lighting->occlusion_rays) ? "shadows"
@@ -96,6 +97,32 @@ static TetcastStatus composite_fragments(void *data) {
   return tc_fragments_composite(call->context, call->lists, call->count, call->frame, call->overlap);
 }
 
+/* Whether lists are possible by themselves, with each other and with the frame. */
+static TetcastStatus check_lists(TetcastContext *context, const TetcastFragmentList *lists, int64_t count,
+                                 const TetcastFrame *frame) {
+  int64_t with = -1; /* a list that has fragments */
+  for (int64_t i = 0; i < count; ++i) {
+    const TetcastFragmentList *list = &lists[i];
+    if (list->count < 0 || (list->count > 0 && !list->data))
+      return ARGUMENT(context, "fragments: list %" PRId64 " has %" PRId64 "%s", i, list->count,
+                      list->data ? "" : ", and no data");
+    const bool lacking = list->count > 0 && list->group_count > 0 && !list->groups;
+    if (list->group_count < 0 || list->group_count > TETCAST_MAX_GROUPS || lacking)
+      return ARGUMENT(context, "fragments: list %" PRId64 " has %d groups%s", i, list->group_count,
+                      lacking ? ", and no numbers of theirs" : "");
+    if (with >= 0 && list->count > 0 && list->group_count != lists[with].group_count)
+      return ARGUMENT(context, "fragments: list %" PRId64 " has %d groups, and list %" PRId64 " has %d", with,
+                      lists[with].group_count, i, list->group_count);
+    with = list->count > 0 ? i : with;
+  }
+  for (int i = 0; with >= 0 && lists[with].group_count > 0 && i < TC_CHANNELS; ++i) {
+    if (frame->channel[i] && tc_channels[i].info.of_groups && frame->groups != lists[with].group_count)
+      return ARGUMENT(context, "a frame of %d groups, but the fragments have %d", frame->groups,
+                      lists[with].group_count);
+  }
+  return TETCAST_OK;
+}
+
 TetcastStatus tetcast_fragments_composite(TetcastContext *context, const TetcastFragmentList *lists, int64_t count,
                                           TetcastFrame *frame, double *overlap) {
   TC_ENTRY;
@@ -103,10 +130,8 @@ TetcastStatus tetcast_fragments_composite(TetcastContext *context, const Tetcast
   CHECK_GIVEN(context, frame);
   if (count < 0 || (count > 0 && !lists))
     return ARGUMENT(context, "fragments: %" PRId64 " lists%s", count, lists ? "" : " that are NULL");
-  for (int64_t i = 0; i < count; ++i) {
-    if (lists[i].count < 0 || (lists[i].count > 0 && !lists[i].data))
-      return ARGUMENT(context, "fragments: list %" PRId64 " has %" PRId64 "%s", i, lists[i].count,
-                      lists[i].data ? "" : ", and no data");
-  }
+  const TetcastStatus status = check_lists(context, lists, count, frame);
+  if (status)
+    return status;
   return tc_call(composite_fragments, &(CompositeFragments){context, lists, count, frame, overlap}, NULL);
 }

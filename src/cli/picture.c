@@ -60,8 +60,8 @@ int picture_create_frame(Run *run, int64_t width, int64_t height) {
   desc.channels = render_options_channels(options);
   if (range_of_picture(run)) /* it is coloured by them; they are written if they were asked for */
     desc.channels |= TETCAST_CHANNEL_VALUE;
-  if (tetcast_scene_groups(run->stage.scene) > 0)
-    desc.groups = tetcast_scene_groups(run->stage.scene);
+  if (ranks_groups(&run->stage) > 0)
+    desc.groups = ranks_groups(&run->stage);
   const TetcastStatus status = tetcast_frame_create(run->stage.context, &desc, &run->frame);
   return status == TETCAST_OK ? CLI_DONE : cli_failed(status);
 }

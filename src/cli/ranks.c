@@ -564,7 +564,7 @@ static int prepare_scenes(Stage *stage, const RenderOptions *options) {
 static TetcastStatus sum_up(Stage *stage, const RenderOptions *options) {
   Ranks *ranks = ranks_of(stage);
   enum { VERTICES, TETRAHEDRA, LEFT_OUT, WELDED, SHELL, BYTES, AREA, NONFINITE, SUMS };
-  double own[SUMS] = {0}, sums[SUMS], range[2] = {INFINITY, -INFINITY};
+  double own[SUMS] = {0}, sums[SUMS], range[2] = {INFINITY, -INFINITY}, groups[2] = {0, 0};
   for (int i = 0; i < ranks->count; i++) {
     const Stage *part = &ranks->parts[i];
     if (part->scene) {
@@ -577,6 +577,7 @@ static TetcastStatus sum_up(Stage *stage, const RenderOptions *options) {
       own[SHELL] += (double)info.shell_faces;
       own[BYTES] += (double)info.bytes;
       stage->info.traversal = info.traversal;
+      groups[1] = fmax(groups[1], tetcast_scene_groups(part->scene));
     }
     if (part->scene && !render_options_direct(options)) {
       own[NONFINITE] += (double)part->nonfinite;
@@ -587,8 +588,11 @@ static TetcastStatus sum_up(Stage *stage, const RenderOptions *options) {
   TetcastStatus status = ranks->mpi->mpi_sum(ranks->world, own, 1, SUMS, sums);
   if (status == TETCAST_OK)
     status = ranks->mpi->mpi_range(ranks->world, range);
+  if (status == TETCAST_OK)
+    status = ranks->mpi->mpi_range(ranks->world, groups);
   if (status != TETCAST_OK)
     return status;
+  ranks->groups = (int)groups[1];
   stage->info.vertices = (int64_t)sums[VERTICES];
   stage->info.tetrahedra = (int64_t)sums[TETRAHEDRA];
   stage->info.left_out = (int64_t)sums[LEFT_OUT];
@@ -725,6 +729,11 @@ int ranks_prepare(Stage *stage, const RenderOptions *options) {
 }
 
 /* ── the picture ── */
+
+int ranks_groups(const Stage *stage) {
+  const Ranks *ranks = ranks_of(stage);
+  return ranks ? ranks->groups : tetcast_scene_groups(stage->scene);
+}
 
 /* Cells that are in several pieces are seen twice, and hide what is behind them twice. */
 static void check_overlap(const Ranks *ranks) {

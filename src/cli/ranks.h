@@ -63,6 +63,9 @@ bool ranks_first(const Stage *stage);
 int ranks_read(Stage *stage, const RenderOptions *options);
 int ranks_prepare(Stage *stage, const RenderOptions *options);
 
+/* tetcast_scene_groups(), or that of the parts of all ranks. */
+int ranks_groups(const Stage *stage);
+
 /* tetcast_scene_render(), or that over all ranks into rank 0's frame. */
 TetcastStatus ranks_render(const Stage *stage, const TetcastRenderDesc *desc, TetcastFrame *frame,
                            TetcastRenderStats *stats);

@@ -17,6 +17,7 @@ struct Ranks {
   int count;
   TetcastScene **scenes; /* [scene_count], of the parts that have one */
   int scene_count;
+  int groups;          /* of the coefficients of all ranks' parts; 0 without */
   double bounds[6];    /* of the whole */
   TetcastVolume *kept; /* of the step before, for the first part; NULL: none */
   uint64_t kept_fingerprint;

@@ -486,10 +486,12 @@ module tetcast
     real(c_double) :: color(3)
   end type
 
-  ! Some fragments; `data` is c_loc() of an array of them.
+  ! Some fragments; `data` is c_loc() of an array of them, `groups` of an array (2, group_count, count).
   type, bind(c) :: TetcastFragmentList
     type(c_ptr) :: data = c_null_ptr
     integer(c_int64_t) :: count = 0
+    type(c_ptr) :: groups = c_null_ptr
+    integer(c_int) :: group_count = 0
   end type
 
   ! What is to be found out about a field.

@@ -308,8 +308,15 @@ TC_INLINE void tc_groups_dim(const unsigned on, const TcAbsorption *absorption, 
     beam->depth_error += absorption->spread;
 }
 
-/* Integrates all groups one after the other. An extinction that several groups in turn have is evaluated once. */
-TC_INLINE void tc_groups_by_group(const unsigned on, const TcCoefficients *c, TcGroups *groups,
+#if TC_LANES == 1 /* where a call costs a tenth of a frame */
+#define TC_SHARED TC_INLINE
+#else
+#define TC_SHARED TC_NOINLINE
+#endif
+
+/* Integrates all groups one after the other. An extinction that several groups in turn have is evaluated once. It is
+ * large, and there once for frames and fragments. */
+TC_SHARED void tc_groups_by_group(const unsigned on, const TcCoefficients *c, TcGroups *groups,
                                   const TcStretch *stretch) {
   TcAbsorption absorption;
   for (int g = 0; g < c->groups; ++g) {
@@ -330,13 +337,16 @@ TC_INLINE void tc_groups_by_group(const unsigned on, const TcCoefficients *c, Tc
   }
 }
 
-/* Integrates all groups of ray `l`, TC_LANES groups at a time. */
+/* Integrates all groups of ray `l`, TC_LANES groups at a time. Beyond the last group, lanes have values of whatever
+ * lies there, negative ones among them, which no extinction may be. */
 TC_INLINE void tc_groups_of_ray(const unsigned on, const TcCoefficients *c, TcGroups *groups, int l,
-                                const TcStretch *stretch) {
+                                TcStretch *stretch) {
   const int extinction = c->slots[0], emission = c->slots[c->groups], first = l * groups->columns;
   const bool one_extinction = c->extinction_count == 1, one_emission = c->emission_count == 1;
   for (int block = 0; block < groups->blocks; ++block) {
     const int g = block * TC_LANES;
+    if (TC_UNLIKELY(c->groups - g < TC_LANES))
+      stretch->mask = tc_mask_of((1U << (c->groups - g)) - 1);
     TcBeam *beam = &groups->beam[l * groups->blocks + block];
     TcEnds kappa = {tc_set(0), tc_set(0), tc_set(0)};
     if (extinction >= 0)
@@ -358,13 +368,13 @@ TC_NOINLINE void tc_groups_ray_by_ray(const unsigned on, const TcCoefficients *c
                                       const TcStretch *all) {
   for (unsigned lanes = tc_bits(mask); lanes; lanes &= lanes - 1) {
     const int l = __builtin_ctz(lanes);
-    const TcStretch ray = {.mask = tc_all(),
-                           .length = tc_set(TC_AT(all->length, l)),
-                           .from = tc_set(TC_AT(all->from, l)),
-                           .to = tc_set(TC_AT(all->to, l)),
-                           .partial = all->partial,
-                           .spread_own = on & TC_BOUND ? tc_set(TC_AT(all->spread_own, l)) : tc_set(0),
-                           .spread_range = on & TC_BOUND ? tc_set(TC_AT(all->spread_range, l)) : tc_set(0)};
+    TcStretch ray = {.mask = tc_all(),
+                     .length = tc_set(TC_AT(all->length, l)),
+                     .from = tc_set(TC_AT(all->from, l)),
+                     .to = tc_set(TC_AT(all->to, l)),
+                     .partial = all->partial,
+                     .spread_own = on & TC_BOUND ? tc_set(TC_AT(all->spread_own, l)) : tc_set(0),
+                     .spread_range = on & TC_BOUND ? tc_set(TC_AT(all->spread_range, l)) : tc_set(0)};
     tc_groups_of_ray(on, c, groups, l, &ray);
   }
 }
@@ -412,10 +422,16 @@ TC_NOINLINE void tc_groups_end_blocks(const TcGatherJob *job, TcGroups *groups) 
   }
 }
 
-/* A member of the beam of ray l and group g. */
-#define tc_groups_of(groups, l, g, member)                                                                             \
-  ((groups)->by_rays ? TC_AT((groups)->beam[(l) * (groups)->blocks + (g) / TC_LANES].member, (g) % TC_LANES)           \
-                     : TC_AT((groups)->beam[g].member, l))
+/* The beam of ray l and group g, and the lane that it is in. */
+TC_INLINE TcBeam *tc_groups_beam(const TcGroups *groups, int l, int g) {
+  return &groups->beam[groups->by_rays ? l * groups->blocks + g / TC_LANES : g];
+}
+TC_INLINE int tc_groups_lane(const TcGroups *groups, int l, int g) {
+  return groups->by_rays ? g % TC_LANES : l;
+}
+
+/* A member of it. */
+#define tc_groups_of(groups, l, g, member) TC_AT(tc_groups_beam(groups, l, g)->member, tc_groups_lane(groups, l, g))
 
 /* The lanes in `active` all of whose groups have an optical depth τ at which e^−τ is zero in double precision. */
 TC_NOINLINE TcMask tc_groups_are_complete(const TcGatherJob *job, TcGroups *groups, TcMask active) {

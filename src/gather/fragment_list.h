@@ -10,6 +10,8 @@
 typedef struct TcFragmentList {
   TetcastContext *context;
   TetcastFragment *data;
+  double *groups; /* [count][width]: with coefficients, radiance and optical depth of each group in turn */
+  int64_t width;  /* twice the number of groups; 0 without coefficients */
   int64_t count, capacity;
   bool out_of_memory;
 } TcFragmentList;
@@ -21,6 +23,11 @@ void tc_fragment_list_clear(TcFragmentList *list);
 /* Appends a fragment for the caller to fill. NULL if memory has run out. */
 static inline TetcastFragment *tc_fragment_list_append(TcFragmentList *list) {
   return list->count < list->capacity || tc_fragment_list_grow(list) ? &list->data[list->count++] : NULL;
+}
+
+/* [width]: the groups of the fragment that was appended last, for the caller to fill. */
+static inline double *tc_fragment_list_groups(TcFragmentList *list) {
+  return list->groups + (list->count - 1) * list->width;
 }
 
 #endif

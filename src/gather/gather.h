@@ -11,6 +11,7 @@
 #include "gather/trace.h"
 #include "gather/value.h"
 #include "gather/visit.h"
+#include "gather/visit_groups.h"
 #endif
 #if TC_LANES == 1
 #include "gather/sampled.h"
@@ -23,13 +24,16 @@
 #define TC_GATHERERS(GATHERER)                                                                                         \
   GATHERER(emission, TcEmission)                                                                                       \
   GATHERER(trace, TcTrace)                                                                                             \
-  GATHERER(groups, TcGroups) GATHERER(value, TcValue) GATHERER(count, TcCount) GATHERER(visit, TcVisit)
+  GATHERER(groups, TcGroups)                                                                                           \
+  GATHERER(value, TcValue) GATHERER(count, TcCount) GATHERER(visit, TcVisit) GATHERER(visit_groups, TcVisitGroups)
 #else
 #define TC_GATHERERS(GATHERER)                                                                                         \
   GATHERER(emission, TcEmission)                                                                                       \
   GATHERER(trace, TcTrace)                                                                                             \
   GATHERER(groups, TcGroups)                                                                                           \
-  GATHERER(value, TcValue) GATHERER(count, TcCount) GATHERER(visit, TcVisit) GATHERER(sampled, TcSampled)
+  GATHERER(value, TcValue)                                                                                             \
+  GATHERER(count, TcCount)                                                                                             \
+  GATHERER(visit, TcVisit) GATHERER(visit_groups, TcVisitGroups) GATHERER(sampled, TcSampled)
 #endif
 
 enum {

@@ -84,9 +84,12 @@ void tc_mpi_release(TcMpiBuffer *buffer) {
 
 void tc_mpi_forget(TetcastMpi *mpi) {
   tetcast_fragments_destroy(&mpi->fragments);
-  for (int i = 0; mpi->outboxes && i < mpi->size; ++i)
+  for (int i = 0; mpi->outboxes && mpi->row_boxes && i < mpi->size; ++i) {
     tc_mpi_release(&mpi->outboxes[i]);
+    tc_mpi_release(&mpi->row_boxes[i]);
+  }
   tc_mpi_release(&mpi->inbox);
+  tc_mpi_release(&mpi->row_inbox);
   tc_mpi_release(&mpi->pixels);
 }
 
@@ -97,6 +100,7 @@ static void release(TetcastMpi *mpi) {
   tc_mpi_forget(mpi);
   free(mpi->requests);
   free(mpi->outboxes);
+  free(mpi->row_boxes);
   free(mpi->counts);
   free(mpi);
 }
@@ -110,8 +114,9 @@ static TetcastMpi *prepare(TetcastContext *context, MPI_Comm comm) {
   MPI_Comm_rank(comm, &mpi->rank);
   MPI_Comm_size(comm, &mpi->size);
   mpi->outboxes = calloc((size_t)mpi->size, sizeof *mpi->outboxes);
+  mpi->row_boxes = calloc((size_t)mpi->size, sizeof *mpi->row_boxes);
   mpi->counts = calloc(2 * (size_t)mpi->size, sizeof *mpi->counts);
-  if (mpi->outboxes && mpi->counts)
+  if (mpi->outboxes && mpi->row_boxes && mpi->counts)
     return mpi;
   release(mpi);
   return NULL;

@@ -24,10 +24,11 @@ typedef struct TcMpiBuffer {
   int64_t bytes, capacity;
 } TcMpiBuffer;
 
-/* What a picture is taken from, and its rows of a larger one. */
+/* What a picture is taken from, its rows of a larger one, and what a pixel of it has. */
 typedef struct TcMpiView {
   TetcastCamera camera;
   int64_t width, height, picture_height, first_row;
+  int64_t type, channels, frame_groups; /* as in TetcastFrameDesc; groups of 1 without channels */
 } TcMpiView;
 
 struct TetcastMpi {
@@ -40,12 +41,15 @@ struct TetcastMpi {
   int64_t request_count, request_capacity;
   /* Kept from picture to picture. */
   TetcastFragments *fragments;
-  TcMpiBuffer *outboxes;  /* [size], what goes to each rank */
-  TcMpiBuffer inbox;      /* what has come, from rank after rank */
+  TcMpiBuffer *outboxes;  /* [size], the fragments that go to each rank */
+  TcMpiBuffer *row_boxes; /* [size], with coefficients, their rows: what TetcastFragmentList.groups has of each */
+  TcMpiBuffer inbox;      /* the fragments that have come, from rank after rank */
+  TcMpiBuffer row_inbox;  /* their rows */
   TcMpiBuffer pixels;     /* at rank 0, what it collects */
   int64_t *counts;        /* [2 · size] */
   double bytes_per_pixel; /* that the last picture's densest band needed on the rank that needed most */
   TcMpiView view;         /* of the last picture, at rank 0 */
+  int groups;             /* of its coefficients; 0 without */
   TetcastIsa isa;         /* the largest instruction set that all ranks have; AUTO: no difference is known */
 };
 

@@ -18,7 +18,6 @@ enum { TRIAL = 16 };
 typedef struct Order {
   TcMpiView view;
   TetcastRenderDesc desc;
-  TetcastType type;
   int known; /* not 0: the last picture was taken from there as well, and tells how much memory this one needs */
 } Order;
 
@@ -33,6 +32,7 @@ typedef struct Picture {
   const TetcastScene *const *scenes;
   int64_t count;
   Order order;
+  TcMpiPlanes planes;
   TetcastFrame *frame; /* at rank 0 */
   Told told;
   /* What has gone wrong since ranks last agreed: they may wait for this one, which goes on until they do it again. */
@@ -57,13 +57,26 @@ static TetcastStatus check_parts(TetcastMpi *mpi, const TetcastScene *const *sce
 static TetcastStatus check_frame(TetcastMpi *mpi, const TetcastFrame *frame) {
   if (!frame)
     return tetcast_context_error(mpi->context, TETCAST_ERROR_ARGUMENT, "frame is NULL at rank 0");
-  for (int i = 0; tetcast_channel_info(i); ++i) {
-    if (tetcast_frame_channel(frame, tetcast_channel_info(i)->channel))
+  const TetcastChannelInfo *info;
+  for (int i = 0; (info = tetcast_channel_info(i)); ++i) {
+    if (tetcast_frame_channel(frame, info->channel) && !info->needs_coefficients)
       return tetcast_context_error(mpi->context, TETCAST_ERROR_ARGUMENT,
-                                   "the channel %s is not possible with parts on several ranks",
-                                   tetcast_channel_info(i)->name);
+                                   "the channel %s is not possible with parts on several ranks", info->name);
   }
   return TETCAST_OK;
+}
+
+/* Notes what a pixel of the frame has. */
+static void note_channels(const TetcastFrame *frame, TcMpiView *view) {
+  const TetcastChannelInfo *info;
+  view->type = tetcast_frame_type(frame);
+  view->frame_groups = 1;
+  for (int i = 0; (info = tetcast_channel_info(i)); ++i) {
+    if (tetcast_frame_channel(frame, info->channel)) {
+      view->channels |= info->channel;
+      view->frame_groups = tetcast_frame_groups(frame);
+    }
+  }
 }
 
 static TetcastStatus set_order(TetcastMpi *mpi, const TetcastCamera *camera, const TetcastRenderDesc *desc,
@@ -76,12 +89,13 @@ static TetcastStatus set_order(TetcastMpi *mpi, const TetcastCamera *camera, con
                                    "stop and start are not possible with parts on several ranks");
   if (status)
     return status;
-  const TcMpiView view = {.camera = *camera,
-                          .width = tetcast_frame_width(frame),
-                          .height = tetcast_frame_height(frame),
-                          .picture_height = desc->picture_height ? desc->picture_height : tetcast_frame_height(frame),
-                          .first_row = desc->first_row};
-  *order = (Order){.view = view, .desc = *desc, .type = tetcast_frame_type(frame)};
+  TcMpiView view = {.camera = *camera,
+                    .width = tetcast_frame_width(frame),
+                    .height = tetcast_frame_height(frame),
+                    .picture_height = desc->picture_height ? desc->picture_height : tetcast_frame_height(frame),
+                    .first_row = desc->first_row};
+  note_channels(frame, &view);
+  *order = (Order){.view = view, .desc = *desc};
   order->known = mpi->bytes_per_pixel > 0 && memcmp(&view, &mpi->view, sizeof view) == 0;
   memcpy(&mpi->view, &view, sizeof view);
   const int64_t rows = order->view.picture_height - order->view.height;
@@ -89,6 +103,44 @@ static TetcastStatus set_order(TetcastMpi *mpi, const TetcastCamera *camera, con
     return tetcast_context_error(mpi->context, TETCAST_ERROR_ARGUMENT,
                                  "%" PRId64 " rows from row %" PRId64 " of a picture that has %" PRId64,
                                  order->view.height, order->view.first_row, order->view.picture_height);
+  return TETCAST_OK;
+}
+
+/* The largest number of groups of this rank's scenes, and the smallest times −1; INT64_MIN where there is none. */
+static void find_groups(const Picture *picture, int64_t groups[2]) {
+  groups[0] = groups[1] = INT64_MIN;
+  for (int64_t i = 0; i < picture->count; ++i) {
+    const int64_t own = tetcast_scene_groups(picture->scenes[i]);
+    groups[0] = own > groups[0] ? own : groups[0];
+    groups[1] = -own > groups[1] ? -own : groups[1];
+  }
+}
+
+/* Whether all scenes have as many groups, and the frame too, by the largest of all ranks' two numbers. All ranks come
+ * to the same here. */
+static TetcastStatus check_groups(Picture *picture, const int64_t groups[2]) {
+  TetcastMpi *mpi = picture->mpi;
+  Order *order = &picture->order;
+  const TcMpiView *view = &order->view;
+  const bool none = groups[0] == INT64_MIN; /* there are no scenes */
+  const int64_t count = none ? view->frame_groups : groups[0];
+  if (!none && groups[0] != -groups[1])
+    return tetcast_context_error(mpi->context, TETCAST_ERROR_ARGUMENT,
+                                 "scenes of %" PRId64 " groups and of %" PRId64 ": all must have the same coefficients",
+                                 -groups[1], groups[0]);
+  const TetcastChannelInfo *info;
+  for (int i = 0; (info = tetcast_channel_info(i)); ++i) {
+    if (view->channels & info->channel && count == 0)
+      return tetcast_context_error(mpi->context, TETCAST_ERROR_ARGUMENT,
+                                   "with a transfer function there is no channel %s", info->name);
+    if (view->channels & info->channel && info->of_groups && view->frame_groups != count)
+      return tetcast_context_error(mpi->context, TETCAST_ERROR_ARGUMENT,
+                                   "a frame of %" PRId64 " groups, but the scenes have %" PRId64, view->frame_groups,
+                                   count);
+  }
+  order->known = order->known && mpi->groups == count;
+  mpi->groups = (int)count;
+  picture->planes = tc_mpi_planes(view);
   return TETCAST_OK;
 }
 
@@ -106,8 +158,10 @@ static TetcastStatus share_order(Picture *picture, const TetcastCamera *camera, 
   if (!status && mpi->rank == 0)
     status = set_order(mpi, camera, desc, picture->frame, order);
   const int64_t isa = desc->isa == TETCAST_ISA_AUTO ? TETCAST_ISA_AVX512 : desc->isa;
-  int64_t least[2] = {-mpi->memory, -isa};
-  status = tc_mpi_agree(mpi, status, least, 2);
+  int64_t least[4] = {-mpi->memory, -isa};
+  if (!status)
+    find_groups(picture, least + 2);
+  status = tc_mpi_agree(mpi, status, least, 4);
   if (!status)
     status = tc_mpi_broadcast(mpi, 0, order, sizeof *order);
   mpi->memory = status ? mpi->memory : -least[0];
@@ -115,7 +169,7 @@ static TetcastStatus share_order(Picture *picture, const TetcastCamera *camera, 
   if (mpi->isa != TETCAST_ISA_AUTO && mpi->isa < order->desc.isa)
     order->desc.isa = mpi->isa;
   picture->told.user = desc->progress;
-  return status;
+  return status ? status : check_groups(picture, least + 2);
 }
 
 /* ── a rank's own parts ── */
@@ -147,7 +201,7 @@ static TetcastStatus render_part(Picture *picture, const TcMpiBand *band, const 
     return status;
   const TetcastFragmentList list = tetcast_fragments_list(mpi->fragments);
   const int64_t needed =
-      2 * list.count * (int64_t)sizeof *list.data + band->width * band->rows * (int64_t)sizeof(int64_t);
+      2 * list.count * tc_mpi_fragment_size(mpi) + band->width * band->rows * (int64_t)sizeof(int64_t);
   yield->memory = yield->memory > needed ? yield->memory : needed;
   yield->fragments += list.count;
   yield->segments += stats.segments;
@@ -163,7 +217,7 @@ static TetcastStatus render_parts(Picture *picture, const TcMpiBand *band, Yield
   const double height = (double)picture->order.view.height, begin = (double)band->first / height;
   const double share = (double)band->rows / height;
   for (int i = 0; i < mpi->size; ++i)
-    mpi->outboxes[i].bytes = 0;
+    mpi->outboxes[i].bytes = mpi->row_boxes[i].bytes = 0;
   for (int64_t i = 0; !status && i < picture->count; ++i) {
     picture->told.begin = begin + share * (double)i / (double)picture->count;
     picture->told.share = share / (double)picture->count;
@@ -174,9 +228,9 @@ static TetcastStatus render_parts(Picture *picture, const TcMpiBand *band, Yield
   if (!status && !tell(&picture->told, 1))
     status = tetcast_context_error(mpi->context, TETCAST_ERROR_CANCELLED, "cancelled");
   for (int i = 0; i < mpi->size; ++i) {
-    yield->memory += mpi->outboxes[i].bytes;
+    yield->memory += mpi->outboxes[i].bytes + mpi->row_boxes[i].bytes;
     if (status)
-      mpi->outboxes[i].bytes = 0;
+      mpi->outboxes[i].bytes = mpi->row_boxes[i].bytes = 0;
   }
   return status;
 }
@@ -189,7 +243,9 @@ static TetcastStatus create_units(const Picture *picture, const TcMpiBand *band,
   TetcastFrameDesc desc = tetcast_frame_desc_default();
   desc.width = TC_MPI_UNIT;
   desc.height = tc_mpi_owned(band, mpi->rank, mpi->size);
-  desc.type = picture->order.type;
+  desc.type = (TetcastType)picture->order.view.type;
+  desc.channels = (uint32_t)picture->order.view.channels;
+  desc.groups = (int)picture->order.view.frame_groups;
   return desc.height > 0 ? tetcast_frame_create(mpi->context, &desc, frame) : TETCAST_OK;
 }
 
@@ -207,18 +263,11 @@ static TetcastStatus composite(Picture *picture, TetcastFrame *units) {
   return status;
 }
 
-static int64_t bytes_sent(const TetcastMpi *mpi) {
-  int64_t bytes = 0;
-  for (int i = 0; i < mpi->size; ++i)
-    bytes += i == mpi->rank ? 0 : mpi->outboxes[i].bytes;
-  return bytes;
-}
-
 /* The exchange of a band that all have rendered, and what follows. No rank may leave it early. */
 static TetcastStatus finish_band(Picture *picture, const TcMpiBand *band, TetcastFrame *units) {
   TetcastMpi *mpi = picture->mpi;
   TetcastMpiStats *stats = &picture->stats;
-  const int64_t unit_bytes = TC_MPI_UNIT * 4 * (picture->order.type == TETCAST_TYPE_FLOAT32 ? 4 : 8);
+  const int64_t unit_bytes = TC_MPI_UNIT * picture->planes.bytes;
   const int64_t pixels = mpi->rank > 0 ? tc_mpi_owned(band, mpi->rank, mpi->size) * unit_bytes : 0;
   const double begin = MPI_Wtime();
   TetcastStatus status = tc_mpi_exchange(mpi);
@@ -227,12 +276,12 @@ static TetcastStatus finish_band(Picture *picture, const TcMpiBand *band, Tetcas
   const double exchanged = MPI_Wtime();
   status = composite(picture, units);
   const double composited = MPI_Wtime();
-  const TetcastStatus gathered = tc_mpi_gather(mpi, band, picture->order.type, units, picture->frame);
+  const TetcastStatus gathered = tc_mpi_gather(mpi, band, &picture->planes, units, picture->frame);
   stats->exchange_seconds += exchanged - begin;
   stats->composite_seconds += composited - exchanged;
   stats->gather_seconds += MPI_Wtime() - composited;
-  stats->bytes += bytes_sent(mpi) + pixels;
-  stats->most_bytes += bytes_sent(mpi) + mpi->inbox.bytes + pixels + mpi->pixels.bytes;
+  stats->bytes += tc_mpi_sent(mpi) + pixels;
+  stats->most_bytes += tc_mpi_sent(mpi) + mpi->inbox.bytes + mpi->row_inbox.bytes + pixels + mpi->pixels.bytes;
   return status ? status : gathered;
 }
 
@@ -268,11 +317,11 @@ static TetcastStatus make_band(Picture *picture, const TcMpiBand *band, Verdict 
   const TetcastStatus announced = tc_mpi_announce(mpi);
   status = status ? status : announced;
   if (!status)
-    status = tc_mpi_prepare_gather(mpi, band, picture->order.type);
+    status = tc_mpi_prepare_gather(mpi, band, &picture->planes);
   if (!status)
     status = create_units(picture, band, &units);
-  const int64_t unit_bytes = TC_MPI_UNIT * 4 * (picture->order.type == TETCAST_TYPE_FLOAT32 ? 4 : 8);
-  *memory = yield.memory + mpi->inbox.bytes + mpi->pixels.bytes + tc_mpi_owned(band, mpi->rank, mpi->size) * unit_bytes;
+  const int64_t units_bytes = tc_mpi_owned(band, mpi->rank, mpi->size) * TC_MPI_UNIT * picture->planes.bytes;
+  *memory = yield.memory + mpi->inbox.bytes + mpi->row_inbox.bytes + mpi->pixels.bytes + units_bytes;
   stats->render_seconds += rendered - begin;
   status = judge(picture, status, band, &yield, verdict, memory);
   stats->wait_seconds += MPI_Wtime() - rendered;
@@ -346,9 +395,9 @@ static TetcastStatus try_out(Picture *picture, double *bytes_per_pixel) {
   for (int64_t i = 0; !status && i < picture->count; ++i)
     status = try_scene(picture, picture->scenes[i], rows, &density);
   free(rows);
-  int64_t bytes = (int64_t)ceil((2 * density.one + 2 * density.all) * sizeof(TetcastFragment));
+  int64_t bytes = (int64_t)ceil((2 * density.one + 2 * density.all) * (double)tc_mpi_fragment_size(mpi));
   status = tc_mpi_agree(mpi, status, &bytes, 1);
-  *bytes_per_pixel = (double)bytes + sizeof(int64_t) + 2 * 4 * sizeof(double);
+  *bytes_per_pixel = (double)(bytes + (int64_t)sizeof(int64_t) + 2 * picture->planes.bytes);
   return status;
 }
 

@@ -20,20 +20,47 @@ int64_t tc_mpi_owned(const TcMpiBand *band, int rank, int ranks) {
 
 /* ── fragments ── */
 
-/* Fragments of one unit go to one rank, in which its pixels are in a row. */
-static TetcastStatus post_unit(TetcastMpi *mpi, const TcMpiBand *band, const TetcastFragment *from, int64_t count) {
+static int64_t row_size(const TetcastMpi *mpi) {
+  return 2 * (int64_t)mpi->groups * (int64_t)sizeof(double);
+}
+
+int64_t tc_mpi_fragment_size(const TetcastMpi *mpi) {
+  return (int64_t)sizeof(TetcastFragment) + row_size(mpi);
+}
+
+int64_t tc_mpi_sent(const TetcastMpi *mpi) {
+  int64_t bytes = 0;
+  for (int i = 0; i < mpi->size; ++i)
+    bytes += i == mpi->rank ? 0 : mpi->outboxes[i].bytes + mpi->row_boxes[i].bytes;
+  return bytes;
+}
+
+/* Adds so many bytes to a box. */
+static TetcastStatus put(TetcastMpi *mpi, TcMpiBuffer *box, const void *from, int64_t bytes) {
+  const TetcastStatus status = tc_mpi_grow(mpi, box, box->bytes + bytes);
+  if (status || bytes == 0)
+    return status;
+  memcpy(box->data + box->bytes, from, (size_t)bytes);
+  box->bytes += bytes;
+  return TETCAST_OK;
+}
+
+/* Fragments of one unit, list[begin, end), go to one rank, in which its pixels are in a row. */
+static TetcastStatus post_unit(TetcastMpi *mpi, const TcMpiBand *band, const TetcastFragmentList *list, int64_t begin,
+                               int64_t end) {
+  const TetcastFragment *from = list->data + begin;
   const int64_t x = from->pixel % band->width, unit = from->pixel / band->width * band->units + x / TC_MPI_UNIT;
-  const int64_t moved = unit / mpi->size * TC_MPI_UNIT + x % TC_MPI_UNIT - from->pixel;
+  const int64_t moved = unit / mpi->size * TC_MPI_UNIT + x % TC_MPI_UNIT - from->pixel, count = end - begin;
   TcMpiBuffer *box = &mpi->outboxes[unit % mpi->size];
-  const TetcastStatus status = tc_mpi_grow(mpi, box, box->bytes + count * (int64_t)sizeof *from);
+  TetcastStatus status = put(mpi, box, from, count * (int64_t)sizeof *from);
   if (status)
     return status;
-  TetcastFragment *to = (TetcastFragment *)(void *)(box->data + box->bytes);
-  memcpy(to, from, (size_t)count * sizeof *from);
+  TetcastFragment *to = (TetcastFragment *)(void *)(box->data + box->bytes) - count;
   for (int64_t i = 0; i < count; ++i)
     to[i].pixel += moved;
-  box->bytes += count * (int64_t)sizeof *from;
-  return TETCAST_OK;
+  if (mpi->groups == 0)
+    return TETCAST_OK;
+  return put(mpi, &mpi->row_boxes[unit % mpi->size], list->groups + 2 * mpi->groups * begin, count * row_size(mpi));
 }
 
 TetcastStatus tc_mpi_post(TetcastMpi *mpi, const TcMpiBand *band, TetcastFragmentList list) {
@@ -44,11 +71,16 @@ TetcastStatus tc_mpi_post(TetcastMpi *mpi, const TcMpiBand *band, TetcastFragmen
       unit_end = row_end;
     for (end = begin + 1; end < list.count && list.data[end].pixel < unit_end;)
       ++end;
-    const TetcastStatus status = post_unit(mpi, band, list.data + begin, end - begin);
+    const TetcastStatus status = post_unit(mpi, band, &list, begin, end);
     if (status)
       return status;
   }
   return TETCAST_OK;
+}
+
+/* How many bytes the rows of so many bytes of fragments have. */
+static int64_t rows_of(const TetcastMpi *mpi, int64_t bytes) {
+  return bytes / (int64_t)sizeof(TetcastFragment) * row_size(mpi);
 }
 
 /* What this rank sends itself stays where it is. */
@@ -63,111 +95,154 @@ TetcastStatus tc_mpi_announce(TetcastMpi *mpi) {
   for (int i = 0; i < mpi->size; ++i) {
     bytes += received[i];
     requests += tc_mpi_pieces(sent[i]) + tc_mpi_pieces(received[i]);
+    requests += tc_mpi_pieces(rows_of(mpi, sent[i])) + tc_mpi_pieces(rows_of(mpi, received[i]));
   }
   status = tc_mpi_grow(mpi, &mpi->inbox, bytes);
+  if (!status)
+    status = tc_mpi_grow(mpi, &mpi->row_inbox, rows_of(mpi, bytes));
   mpi->inbox.bytes = status ? 0 : bytes;
+  mpi->row_inbox.bytes = rows_of(mpi, mpi->inbox.bytes);
   return status ? status : tc_mpi_reserve(mpi, requests);
 }
 
+/* From each rank come fragments, and then their rows. */
 TetcastStatus tc_mpi_exchange(TetcastMpi *mpi) {
   const int64_t *received = mpi->counts + mpi->size;
   TetcastStatus status = TETCAST_OK;
-  for (int64_t i = 0, at = 0; !status && i < mpi->size; at += received[i++])
+  for (int64_t i = 0, at = 0; !status && i < mpi->size; at += received[i++]) {
     status = tc_mpi_start_receive(mpi, (int)i, mpi->inbox.data + at, received[i]);
+    if (!status && mpi->groups > 0)
+      status = tc_mpi_start_receive(mpi, (int)i, mpi->row_inbox.data + rows_of(mpi, at), rows_of(mpi, received[i]));
+  }
   /* Each begins with the rank that follows it, so that not all send to the same one. */
   for (int i = 1; !status && i < mpi->size; ++i) {
     const int to = (mpi->rank + i) % mpi->size;
     status = tc_mpi_start_send(mpi, to, mpi->outboxes[to].data, mpi->outboxes[to].bytes);
+    if (!status && mpi->groups > 0)
+      status = tc_mpi_start_send(mpi, to, mpi->row_boxes[to].data, mpi->row_boxes[to].bytes);
   }
   const TetcastStatus finished = tc_mpi_finish(mpi);
   return status ? status : finished;
 }
 
-/* Cuts what lies in a buffer into lists of ascending pixels: a new one begins where pixels descend. `lists` may be
- * NULL. Returns how many. */
-static int64_t cut_lists(const char *data, int64_t bytes, TetcastFragmentList *lists) {
-  const TetcastFragment *fragments = (const TetcastFragment *)(const void *)data;
-  const int64_t count = bytes / (int64_t)sizeof *fragments;
+/* Cuts what lies in a box, and in that of its rows, into lists of ascending pixels: a new one begins where pixels
+ * descend. `lists` may be NULL. Returns how many. */
+static int64_t cut_lists(const TetcastMpi *mpi, const TcMpiBuffer *box, const TcMpiBuffer *rows,
+                         TetcastFragmentList *lists) {
+  const TetcastFragment *fragments = (const TetcastFragment *)(const void *)box->data;
+  const int64_t count = box->bytes / (int64_t)sizeof *fragments;
   int64_t lists_count = 0;
   for (int64_t begin = 0, end; begin < count; begin = end) {
     for (end = begin + 1; end < count && fragments[end].pixel >= fragments[end - 1].pixel;)
       ++end;
-    if (lists)
-      lists[lists_count] = (TetcastFragmentList){fragments + begin, end - begin};
+    if (lists) {
+      lists[lists_count] = (TetcastFragmentList){.data = fragments + begin, .count = end - begin};
+      lists[lists_count].group_count = mpi->groups;
+      if (mpi->groups > 0)
+        lists[lists_count].groups = (const double *)(const void *)rows->data + 2 * mpi->groups * begin;
+    }
     ++lists_count;
   }
   return lists_count;
 }
 
 TetcastStatus tc_mpi_lists(TetcastMpi *mpi, TetcastFragmentList **lists, int64_t *count) {
-  const TcMpiBuffer *own = &mpi->outboxes[mpi->rank], *others = &mpi->inbox;
-  const int64_t of_own = cut_lists(own->data, own->bytes, NULL);
-  *count = of_own + cut_lists(others->data, others->bytes, NULL);
+  const TcMpiBuffer *own = &mpi->outboxes[mpi->rank], *own_rows = &mpi->row_boxes[mpi->rank];
+  const int64_t of_own = cut_lists(mpi, own, own_rows, NULL);
+  *count = of_own + cut_lists(mpi, &mpi->inbox, &mpi->row_inbox, NULL);
   *lists = calloc((size_t)*count + 1, sizeof **lists);
   if (!*lists)
     return tetcast_context_error(mpi->context, TETCAST_ERROR_MEMORY, "rank %d: out of memory: fragments", mpi->rank);
-  cut_lists(own->data, own->bytes, *lists);
-  cut_lists(others->data, others->bytes, *lists + of_own);
+  cut_lists(mpi, own, own_rows, *lists);
+  cut_lists(mpi, &mpi->inbox, &mpi->row_inbox, *lists + of_own);
   return TETCAST_OK;
 }
 
 /* ── pixels ── */
 
-static int64_t pixel_size(TetcastType type) {
-  return 4 * (int64_t)(type == TETCAST_TYPE_FLOAT32 ? sizeof(float) : sizeof(double));
+TcMpiPlanes tc_mpi_planes(const TcMpiView *view) {
+  const int64_t number = view->type == TETCAST_TYPE_FLOAT32 ? sizeof(float) : sizeof(double);
+  TcMpiPlanes planes = {.count = 1, .size = {4 * number}, .bytes = 4 * number};
+  const TetcastChannelInfo *info;
+  for (int i = 0; (info = tetcast_channel_info(i)) && planes.count < TC_MPI_PLANES; ++i) {
+    if (!(view->channels & info->channel))
+      continue;
+    planes.channel[planes.count] = info->channel;
+    planes.size[planes.count] = number * (info->of_groups ? view->frame_groups : info->components);
+    planes.bytes += planes.size[planes.count++];
+  }
+  return planes;
 }
 
-TetcastStatus tc_mpi_prepare_gather(TetcastMpi *mpi, const TcMpiBand *band, TetcastType type) {
-  const int64_t unit_bytes = TC_MPI_UNIT * pixel_size(type);
-  int64_t bytes = 0, requests = tc_mpi_pieces(tc_mpi_owned(band, mpi->rank, mpi->size) * unit_bytes);
-  for (int i = 1; mpi->rank == 0 && i < mpi->size; ++i) {
-    bytes += tc_mpi_owned(band, i, mpi->size) * unit_bytes;
-    requests += tc_mpi_pieces(tc_mpi_owned(band, i, mpi->size) * unit_bytes);
+/* The data of a plane, and the bytes from row to row. */
+static char *plane_of(const TetcastFrame *frame, const TcMpiPlanes *planes, int plane, int64_t *stride) {
+  *stride = plane == 0 ? tetcast_frame_row_stride(frame) : tetcast_frame_width(frame) * planes->size[plane];
+  return (char *)(uintptr_t)(plane == 0 ? tetcast_frame_pixels(frame)
+                                        : tetcast_frame_channel(frame, planes->channel[plane]));
+}
+
+TetcastStatus tc_mpi_prepare_gather(TetcastMpi *mpi, const TcMpiBand *band, const TcMpiPlanes *planes) {
+  int64_t bytes = 0, requests = 0;
+  for (int i = 0; i < mpi->size; ++i) {
+    const int64_t pixels = tc_mpi_owned(band, i, mpi->size) * TC_MPI_UNIT;
+    if (mpi->rank == 0 && i > 0)
+      bytes += pixels * planes->bytes;
+    for (int p = 0; (mpi->rank == 0 || i == mpi->rank) && p < planes->count; ++p)
+      requests += tc_mpi_pieces(pixels * planes->size[p]);
   }
   const TetcastStatus status = tc_mpi_grow(mpi, &mpi->pixels, bytes);
   mpi->pixels.bytes = status ? 0 : bytes;
   return status ? status : tc_mpi_reserve(mpi, requests);
 }
 
-/* Puts the units of a rank where they belong. The frame's pixels are const only to those who look at pictures; this is
- * who makes them. */
-static void put_units(const TetcastMpi *mpi, const TcMpiBand *band, int rank, int64_t size, const char *from,
-                      TetcastFrame *frame) {
-  char *pixels = (char *)(uintptr_t)tetcast_frame_pixels(frame);
-  const int64_t stride = tetcast_frame_row_stride(frame), owned = tc_mpi_owned(band, rank, mpi->size);
+/* Puts a plane of a rank's units where it belongs. The frame's pixels are const only to those who look at pictures;
+ * this is who makes them. */
+static void put_units(const TetcastMpi *mpi, const TcMpiBand *band, int rank, const TcMpiPlanes *planes, int plane,
+                      const char *from, TetcastFrame *frame) {
+  int64_t stride;
+  char *to = plane_of(frame, planes, plane, &stride);
+  const int64_t size = planes->size[plane], owned = tc_mpi_owned(band, rank, mpi->size);
   for (int64_t i = 0; i < owned; ++i) {
     const int64_t unit = i * mpi->size + rank, x = unit % band->units * TC_MPI_UNIT;
     const int64_t count = band->width - x < TC_MPI_UNIT ? band->width - x : TC_MPI_UNIT;
     if (count > 0)
-      memcpy(pixels + (band->first + unit / band->units) * stride + x * size, from + i * TC_MPI_UNIT * size,
+      memcpy(to + (band->first + unit / band->units) * stride + x * size, from + i * TC_MPI_UNIT * size,
              (size_t)(count * size));
   }
 }
 
-TetcastStatus tc_mpi_gather(TetcastMpi *mpi, const TcMpiBand *band, TetcastType type, const TetcastFrame *own,
+/* The bytes that a rank's units have in a plane. */
+static int64_t units_bytes(const TetcastMpi *mpi, const TcMpiBand *band, int rank, int64_t size) {
+  return tc_mpi_owned(band, rank, mpi->size) * TC_MPI_UNIT * size;
+}
+
+TetcastStatus tc_mpi_gather(TetcastMpi *mpi, const TcMpiBand *band, const TcMpiPlanes *planes, const TetcastFrame *own,
                             TetcastFrame *frame) {
-  const int64_t size = pixel_size(type), unit_bytes = TC_MPI_UNIT * size;
   TetcastStatus status = TETCAST_OK;
-  int64_t at = 0;
-  if (mpi->rank > 0 && own)
-    status =
-        tc_mpi_start_send(mpi, 0, tetcast_frame_pixels(own), tc_mpi_owned(band, mpi->rank, mpi->size) * unit_bytes);
-  for (int i = 1; mpi->rank == 0 && !status && i < mpi->size; ++i) {
-    const int64_t bytes = tc_mpi_owned(band, i, mpi->size) * unit_bytes;
-    status = tc_mpi_start_receive(mpi, i, mpi->pixels.data + at, bytes);
-    at += bytes;
+  int64_t at = 0, stride;
+  for (int p = 0; mpi->rank > 0 && own && !status && p < planes->count; ++p)
+    status = tc_mpi_start_send(mpi, 0, plane_of(own, planes, p, &stride),
+                               units_bytes(mpi, band, mpi->rank, planes->size[p]));
+  for (int i = 1; mpi->rank == 0 && i < mpi->size; ++i) {
+    for (int p = 0; !status && p < planes->count; ++p) {
+      const int64_t bytes = units_bytes(mpi, band, i, planes->size[p]);
+      status = tc_mpi_start_receive(mpi, i, mpi->pixels.data + at, bytes);
+      at += bytes;
+    }
   }
   const TetcastStatus finished = tc_mpi_finish(mpi);
   if (status || finished)
     return status ? status : finished;
   at = 0;
   for (int i = 0; mpi->rank == 0 && i < mpi->size; ++i) {
-    if (i == 0 && own)
-      put_units(mpi, band, 0, size, tetcast_frame_pixels(own), frame);
-    if (i == 0)
-      continue;
-    put_units(mpi, band, i, size, mpi->pixels.data + at, frame);
-    at += tc_mpi_owned(band, i, mpi->size) * unit_bytes;
+    for (int p = 0; p < planes->count; ++p) {
+      if (i == 0 && own)
+        put_units(mpi, band, 0, planes, p, plane_of(own, planes, p, &stride), frame);
+      if (i == 0)
+        continue;
+      put_units(mpi, band, i, planes, p, mpi->pixels.data + at, frame);
+      at += units_bytes(mpi, band, i, planes->size[p]);
+    }
   }
   return TETCAST_OK;
 }

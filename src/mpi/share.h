@@ -24,6 +24,25 @@ typedef struct TcMpiBand {
   int64_t units;
 } TcMpiBand;
 
+enum { TC_MPI_PLANES = 5 };
+
+/* The arrays of a frame, its pixels and then its channels. */
+typedef struct TcMpiPlanes {
+  int count;
+  TetcastChannel channel[TC_MPI_PLANES]; /* from the second one on */
+  int64_t size[TC_MPI_PLANES];           /* the bytes that a pixel has in each */
+  int64_t bytes;                         /* in all of them */
+} TcMpiPlanes;
+
+/* Those of frames as the view has them, whose channels are such as only scenes with coefficients have. */
+TcMpiPlanes tc_mpi_planes(const TcMpiView *view);
+
+/* The bytes of a fragment and its row. */
+int64_t tc_mpi_fragment_size(const TetcastMpi *mpi);
+
+/* The bytes that this rank sends to others. */
+int64_t tc_mpi_sent(const TetcastMpi *mpi);
+
 /* A band; rows beyond the most that a rank can own units of are left out. */
 TcMpiBand tc_mpi_band(const TetcastMpi *mpi, int64_t width, int64_t first, int64_t rows);
 
@@ -44,11 +63,11 @@ TetcastStatus tc_mpi_exchange(TetcastMpi *mpi);
 TetcastStatus tc_mpi_lists(TetcastMpi *mpi, TetcastFragmentList **lists, int64_t *count);
 
 /* Makes room for the pixels that rank 0 collects from the others, at rank 0, and for the messages they come by. */
-TetcastStatus tc_mpi_prepare_gather(TetcastMpi *mpi, const TcMpiBand *band, TetcastType type);
+TetcastStatus tc_mpi_prepare_gather(TetcastMpi *mpi, const TcMpiBand *band, const TcMpiPlanes *planes);
 
-/* Sends the pixels of `own`, this rank's units, to rank 0, which puts all into its `frame`. `own` is NULL if there are
+/* Sends all planes of `own`, this rank's units, to rank 0, which puts all into its `frame`. `own` is NULL if there are
  * none. */
-TetcastStatus tc_mpi_gather(TetcastMpi *mpi, const TcMpiBand *band, TetcastType type, const TetcastFrame *own,
+TetcastStatus tc_mpi_gather(TetcastMpi *mpi, const TcMpiBand *band, const TcMpiPlanes *planes, const TetcastFrame *own,
                             TetcastFrame *frame);
 
 #endif

@@ -4,7 +4,6 @@
 #include "render/fragments.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/parallel.h"
@@ -28,41 +27,69 @@ void tc_fragments_destroy(TetcastFragments *fragments) {
     tc_fragment_list_clear(&fragments->lists[i]);
   tc_release(fragments->context, fragments->lists);
   tc_release(fragments->context, fragments->data);
+  tc_release(fragments->context, fragments->groups);
   tc_release(fragments->context, fragments);
 }
 
 /* ── the order of fragments ── */
 
 /* Nothing but what fragments are decides, not where they come from. */
-static int compare(const void *left, const void *right) {
-  const TetcastFragment *a = left, *b = right;
-  if (a->begin != b->begin)
-    return a->begin < b->begin ? -1 : 1;
+static bool comes_before(const TcFragmentRef *p, const TcFragmentRef *q) {
+  if (p->begin != q->begin)
+    return p->begin < q->begin;
+  const TetcastFragment *a = p->fragment, *b = q->fragment;
   if (a->end != b->end)
-    return a->end < b->end ? -1 : 1;
+    return a->end < b->end;
   if (a->optical_depth != b->optical_depth)
-    return a->optical_depth < b->optical_depth ? -1 : 1;
+    return a->optical_depth < b->optical_depth;
   for (int k = 0; k < 3; ++k) {
     if (a->color[k] != b->color[k])
-      return a->color[k] < b->color[k] ? -1 : 1;
+      return a->color[k] < b->color[k];
   }
-  return 0;
+  for (int64_t i = 0; i < p->width; ++i) {
+    if (p->groups[i] != q->groups[i])
+      return p->groups[i] < q->groups[i];
+  }
+  return false;
 }
 
-void tc_fragments_sort(TetcastFragment *fragments, int64_t count) {
-  if (count > FEW) {
-    qsort(fragments, (size_t)count, sizeof *fragments, compare);
-    return;
-  }
+static void sort_few(TcFragmentRef *refs, int64_t count) {
   for (int64_t i = 1; i < count; ++i) {
-    if (compare(&fragments[i - 1], &fragments[i]) <= 0)
+    if (!comes_before(&refs[i], &refs[i - 1]))
       continue;
-    const TetcastFragment moved = fragments[i];
+    const TcFragmentRef moved = refs[i];
     int64_t at = i;
-    for (; at > 0 && compare(&moved, &fragments[at - 1]) < 0; --at)
-      fragments[at] = fragments[at - 1];
-    fragments[at] = moved;
+    for (; at > 0 && comes_before(&moved, &refs[at - 1]); --at)
+      refs[at] = refs[at - 1];
+    refs[at] = moved;
   }
+}
+
+/* Merges from [0, middle) and from [middle, count), each in order. */
+static void merge_two(const TcFragmentRef *from, int64_t middle, int64_t count, TcFragmentRef *to) {
+  int64_t i = 0, j = middle;
+  for (int64_t k = 0; k < count; ++k) {
+    const bool right = i == middle || (j < count && comes_before(&from[j], &from[i]));
+    to[k] = from[right ? j++ : i++];
+  }
+}
+
+/* By insertion where there are few, else by merging what has been sorted so; qsort() takes 1.4 times as long. */
+void tc_fragments_sort(TcFragmentRef *refs, TcFragmentRef *scratch, int64_t count) {
+  TcFragmentRef *from = refs, *to = scratch;
+  for (int64_t i = 0; i < count; i += FEW)
+    sort_few(refs + i, count - i < FEW ? count - i : FEW);
+  for (int64_t size = FEW; size < count; size *= 2) {
+    for (int64_t i = 0; i < count; i += 2 * size) {
+      const int64_t left = count - i, both = left < 2 * size ? left : 2 * size;
+      merge_two(from + i, left < size ? left : size, both, to + i);
+    }
+    TcFragmentRef *const merged = to;
+    to = from;
+    from = merged;
+  }
+  if (from != refs)
+    memcpy(refs, from, (size_t)count * sizeof *refs);
 }
 
 /* ── rendering ── */
@@ -122,24 +149,69 @@ bool tc_fragments_tile(const TcRender *render, int64_t x0, int64_t y0, int64_t x
 static bool move_fragments(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   const TcRender *render = data;
-  TetcastFragment *to = render->fragments->result->data;
-  int64_t *place = render->fragments->place;
+  const TetcastFragments *to = render->fragments->result;
   const int64_t first = render->fragments->first;
   for (int64_t i = begin; i < end; ++i) {
     const TcFragmentList *list = &render->workers[i].worker.fragments;
-    for (int64_t j = 0; j < list->count; ++j)
-      to[place[list->data[j].pixel - first]++] = list->data[j];
+    for (int64_t j = 0; j < list->count; ++j) {
+      const int64_t place = render->fragments->place[list->data[j].pixel - first]++;
+      to->data[place] = list->data[j];
+      if (to->width)
+        memcpy(to->groups + place * to->width, list->groups + j * to->width, (size_t)to->width * sizeof *to->groups);
+    }
   }
   return true;
 }
 
-/* By now, a pixel's place is that of the next one's first fragment. */
+static TcFragmentRef refer(const TetcastFragments *fragments, int64_t i) {
+  return tc_fragment_ref(fragments->data, fragments->groups, fragments->width, i);
+}
+
+static bool is_before(const TetcastFragments *fragments, int64_t a, int64_t b) {
+  const TcFragmentRef left = refer(fragments, a), right = refer(fragments, b);
+  return comes_before(&left, &right);
+}
+
+/* Puts the fragments [first, first + count) of a pixel into order, by a copy of them. False if memory has run out. */
+static bool sort_pixel(const TetcastFragments *fragments, int64_t first, int64_t count) {
+  TetcastContext *context = fragments->context;
+  const int64_t width = fragments->width;
+  TetcastFragments copy = {.width = width};
+  copy.data = tc_allocate(context, count, sizeof *copy.data);
+  copy.groups = tc_allocate(context, count, (size_t)(width + 1) * sizeof *copy.groups);
+  TcFragmentRef *refs = tc_allocate(context, 2 * count, sizeof *refs);
+  const bool ok = copy.data && copy.groups && refs;
+  if (ok) {
+    memcpy(copy.data, fragments->data + first, (size_t)count * sizeof *copy.data);
+    if (width)
+      memcpy(copy.groups, fragments->groups + first * width, (size_t)(count * width) * sizeof *copy.groups);
+    for (int64_t i = 0; i < count; ++i)
+      refs[i] = refer(&copy, i);
+    tc_fragments_sort(refs, refs + count, count);
+  }
+  for (int64_t i = 0; ok && i < count; ++i) {
+    fragments->data[first + i] = *refs[i].fragment;
+    for (int64_t k = 0; k < width; ++k)
+      fragments->groups[(first + i) * width + k] = refs[i].groups[k];
+  }
+  tc_release(context, copy.data);
+  tc_release(context, copy.groups);
+  tc_release(context, refs);
+  return ok;
+}
+
+/* By now, a pixel's place is that of the next one's first fragment. Rays come to their paths in order, so that
+ * fragments are in theirs, unless the mesh overlaps itself. */
 static bool sort_pixels(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   const struct TcFragmentWork *work = data;
   for (int64_t i = begin; i < end; ++i) {
-    const int64_t first = i ? work->place[i - 1] : 0;
-    tc_fragments_sort(work->result->data + first, work->place[i] - first);
+    const int64_t first = i ? work->place[i - 1] : 0, last = work->place[i];
+    int64_t at = first + 1;
+    while (at < last && !is_before(work->result, at, at - 1))
+      ++at;
+    if (at < last && !sort_pixel(work->result, first, last - first))
+      return false;
   }
   return true;
 }
@@ -162,10 +234,16 @@ bool tc_fragments_lend(TcRender *render, int threads) {
   find_seen(render, render->fragments->seen);
   if (!make_places(render, render->fragments))
     return false;
-  const TetcastFragments *result = render->fragments->result;
-  for (int i = 0; i < threads && i < result->list_count; ++i) {
-    render->workers[i].worker.fragments = result->lists[i];
-    result->lists[i] = (TcFragmentList){.context = result->context};
+  TetcastFragments *result = render->fragments->result;
+  const TcCoefficients *coefficients = render->job.coefficients;
+  result->width = coefficients ? 2 * (int64_t)coefficients->groups : 0;
+  for (int i = 0; i < threads; ++i) {
+    TcFragmentList *list = &render->workers[i].worker.fragments;
+    if (i < result->list_count && result->lists[i].width == result->width) {
+      *list = result->lists[i];
+      result->lists[i] = (TcFragmentList){.context = result->context};
+    }
+    list->width = result->width;
   }
   return true;
 }
@@ -182,14 +260,40 @@ static void take_back(TcRender *render, int threads) {
     tc_release(result->context, result->lists);
     result->lists = lists;
     result->list_count = threads;
+    for (int i = 0; i < threads; ++i)
+      lists[i] = (TcFragmentList){.context = result->context};
   }
   for (int i = 0; i < threads; ++i) {
     TcFragmentList *list = &render->workers[i].worker.fragments;
+    tc_fragment_list_clear(&result->lists[i]); /* which is left where it was made for another number of groups */
     result->lists[i] = *list;
     result->lists[i].count = 0;
     result->lists[i].out_of_memory = false;
     *list = (TcFragmentList){.context = result->context};
   }
+}
+
+/* Makes room for so many fragments. */
+static TetcastStatus reserve(TetcastFragments *result, int64_t count) {
+  TetcastContext *context = result->context;
+  if (count > result->capacity) {
+    tc_release(context, result->data);
+    result->data = NULL;
+    result->capacity = 0;
+    if (!tc_allocate_array(context, (void **)&result->data, count, sizeof *result->data, "fragments"))
+      return TETCAST_ERROR_MEMORY;
+    result->capacity = count;
+  }
+  const int64_t numbers = count * result->width;
+  if (numbers > result->groups_capacity) {
+    tc_release(context, result->groups);
+    result->groups = NULL;
+    result->groups_capacity = 0;
+    if (!tc_allocate_array(context, (void **)&result->groups, numbers, sizeof *result->groups, "fragments"))
+      return TETCAST_ERROR_MEMORY;
+    result->groups_capacity = numbers;
+  }
+  return TETCAST_OK;
 }
 
 static TetcastStatus take_fragments(TcRender *render, int threads) {
@@ -202,16 +306,12 @@ static TetcastStatus take_fragments(TcRender *render, int threads) {
     render->fragments->place[i] = count;
     count += of_pixel;
   }
-  if (count > result->capacity) {
-    tc_release(context, result->data);
-    result->data = NULL;
-    result->capacity = 0;
-    if (!tc_allocate_array(context, (void **)&result->data, count, sizeof *result->data, "fragments"))
-      return TETCAST_ERROR_MEMORY;
-    result->capacity = count;
-  }
+  const TetcastStatus status = reserve(result, count);
+  if (status)
+    return status;
   tc_parallel_for(context, threads, 1, move_fragments, render, NULL);
-  tc_parallel_for(context, pixels, GRAIN, sort_pixels, render->fragments, NULL);
+  if (tc_parallel_for(context, pixels, GRAIN, sort_pixels, render->fragments, NULL))
+    return tc_error(context, TETCAST_ERROR_MEMORY, "out of memory: fragments");
   result->count = count;
   return TETCAST_OK;
 }

@@ -8,7 +8,8 @@
 struct TetcastFragments {
   TetcastContext *context;
   TetcastFragment *data; /* [capacity] */
-  int64_t count, capacity;
+  double *groups;        /* [count][width], of groups_capacity numbers: as in TcFragmentList */
+  int64_t width, groups_capacity, count, capacity;
   TcFragmentList *lists; /* [list_count]: memory for the workers of the next picture */
   int list_count;
 };
@@ -21,8 +22,23 @@ struct TcFragmentWork {
   int64_t *place;        /* [pixels]: how many fragments the pixel has, then where its next one goes */
 };
 
-/* Puts a pixel's fragments into the one order in which they are composited. */
-void tc_fragments_sort(TetcastFragment *fragments, int64_t count);
+/* A fragment where it lies. */
+typedef struct TcFragmentRef {
+  double begin; /* its own, by which most are told apart */
+  const TetcastFragment *fragment;
+  const double *groups; /* [width] */
+  int64_t width;
+} TcFragmentRef;
+
+/* Fragment i of an array, with rows of `width` numbers; 0: there are none. */
+static inline TcFragmentRef tc_fragment_ref(const TetcastFragment *data, const double *groups, int64_t width,
+                                            int64_t i) {
+  return (TcFragmentRef){data[i].begin, &data[i], width ? groups + i * width : NULL, width};
+}
+
+/* Puts a pixel's fragments, refs [count], into the one order in which they are composited. `scratch` [count] is room
+ * for doing that. */
+void tc_fragments_sort(TcFragmentRef *refs, TcFragmentRef *scratch, int64_t count);
 
 /* Renders a tile: the worker's list grows by its fragments. False if memory has run out. */
 bool tc_fragments_tile(const TcRender *render, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorking *working);

@@ -404,7 +404,7 @@ static State *prepare(const TcJob *job, TcWorker *worker) {
     if (job->coefficients) {
       double *memory =
           (double *)(void *)((char *)state + sizeof *state) + (size_t)i * tc_groups_size(job->coefficients);
-      tc_groups_place(job->coefficients, memory, &state->packet[i].gather.groups);
+      tc_groups_place(job->coefficients, memory, &state->packet[i].gather.groups); /* or those of visit_groups */
     }
 #endif
   }
@@ -438,8 +438,8 @@ static bool run_packets(const TcJob *job, State *state, TcWorker *worker, const 
 }
 
 /* Places rays that end at `stop` (NULL: they don't end), clips them, and leaves out those that pass by the volume or of
- * which nothing counts. Such a ray has sums of 0; but with coefficients, each group has a transmittance of 1, which is
- * added here. */
+ * which nothing counts. Such a ray has sums of 0; but with coefficients, unless it is fragments that are gathered, each
+ * group has a transmittance of 1, which is added here. */
 static void place_rays(const TcJob *job, const TcGround *ground, const TcWide *stop, double *sums, TcPlaced *placed) {
   unsigned left_out = placed->lanes;
   tc_place(ground, placed);
@@ -453,7 +453,7 @@ static void place_rays(const TcJob *job, const TcGround *ground, const TcWide *s
   if (job->start)
     placed->doubt += tc_set_wide(job->interval_error);
   left_out &= ~placed->lanes;
-  for (; TC_UNLIKELY(job->coefficients != NULL) && left_out; left_out &= left_out - 1) {
+  for (; TC_UNLIKELY(job->coefficients && job->sums > 1) && left_out; left_out &= left_out - 1) {
     double *of_ray = sums + PIXEL_OF(placed->destination[__builtin_ctz(left_out)]) * job->sums;
     for (int g = 0; g < job->coefficients->groups; ++g)
       of_ray[3 * g + 2] += 1;

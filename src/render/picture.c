@@ -109,12 +109,17 @@ void tc_job_of_scene(const TetcastScene *scene, bool bound, TcJob *job) {
   job->shell = &scene->prepared->shell;
 }
 
-/* Sets up the job for fragments of what is seen through a transfer function. */
+/* Sets up the job for fragments, by coefficients or of what is seen through a transfer function. */
 static void see_fragments(const TetcastScene *scene, TcJob *job) {
+  job->sums = 1;
+  if (job->coefficients) {
+    job->to_the_end = true; /* whoever composites them may want all of the optical depth, and of the length */
+    job->kernel = choose_row("visit_groups", TC_WEIGHTS | TC_CELLS | TC_PARTS, &job->one_lane);
+    return;
+  }
   const unsigned looks = (job->surfaces ? TC_SURFACES : 0) | (job->second ? TC_SECOND : 0);
   const unsigned needed =
       TC_COLORED | TC_PARTS | (job->pieces->scaled ? TC_SCALED : 0) | looks | association_of(scene->values);
-  job->sums = 1;
   job->kernel = choose_row("visit", needed, &job->one_lane);
 }
 

@@ -10,10 +10,18 @@ typedef enum Share { WHOLE, BOX, WAVES, SCATTER, SHARES } Share;
 
 static const char *const share_names[SHARES] = {"the whole", "a box", "a slab with wavy faces", "an eighth at random"};
 
+/* What is seen of it. */
+typedef enum Look { PLAIN, SURFACES, GROUP, GROUPS, LOOKS } Look;
+
+static const struct {
+  const char *name;
+  int surfaces, groups;
+} looks[LOOKS] = {{"", 0, 0}, {" with isosurfaces", 2, 0}, {" with coefficients", 0, 1}, {" with 8 groups", 0, 8}};
+
 /* A part, as a picture and as fragments, which are measured by turns. */
 typedef struct Measure {
   Share share;
-  bool surfaces;
+  Look look;
   Times times[2];
   TetcastRenderStats stats[2];
 } Measure;
@@ -106,6 +114,17 @@ static Clock measure_fragments(const Job *job, Tet *tet, const TetcastCamera *ca
   return times_median(&times);
 }
 
+/* The scalar as extinction and emission of each group. */
+static void set_groups(Tet *tet, int count) {
+  const TetcastField *fields[TETCAST_MAX_GROUPS];
+  TetcastCoefficientsDesc desc = tetcast_coefficients_desc_default();
+  for (int i = 0; i < count; i++)
+    fields[i] = tet->field;
+  desc.extinction = desc.emission = fields;
+  desc.extinction_count = desc.emission_count = count;
+  must_be_ok(tetcast_scene_set_coefficients(tet->scene, &desc));
+}
+
 static void measure_part(const Job *job, Measure *measure) {
   static const TetcastIsosurface surfaces[2] = {{0.4, {1, 0.5, 0}, 0.3}, {0.6, {0, 0.5, 1}, 0.3}};
   const TetcastCamera camera = scene_camera(TETCAST_ORTHOGRAPHIC);
@@ -114,7 +133,9 @@ static void measure_part(const Job *job, Measure *measure) {
   TetcastFragments *fragments = NULL;
   make_part(job->mesh, measure->share, &part);
   open_part(&tet, job->mesh, &part);
-  must_be_ok(tetcast_scene_set_isosurfaces(tet.scene, surfaces, measure->surfaces ? 2 : 0));
+  must_be_ok(tetcast_scene_set_isosurfaces(tet.scene, surfaces, looks[measure->look].surfaces));
+  if (looks[measure->look].groups)
+    set_groups(&tet, looks[measure->look].groups);
   must_be_ok(tetcast_fragments_create(tet.context, &fragments));
   TetcastFrame *frame = tet_frame(&tet, job->options->pixels, TETCAST_TYPE_FLOAT64, 0);
   for (int round = 0; round < job->scene->rounds; round++) {
@@ -132,11 +153,11 @@ void job_parts(const Job *job) {
   row.task = "parts";
   row.threads = 1;
   row.pixels = job->options->pixels;
-  for (int i = 0; i < 2 * SHARES; i++) {
-    Measure measure = {.share = (Share)(i % SHARES), .surfaces = i >= SHARES};
+  for (int i = 0; i < LOOKS * SHARES; i++) {
+    Measure measure = {.share = (Share)(i % SHARES), .look = (Look)(i / SHARES)};
     char name[64];
     measure_part(job, &measure);
-    snprintf(name, sizeof name, "%s%s", share_names[measure.share], measure.surfaces ? " with isosurfaces" : "");
+    snprintf(name, sizeof name, "%s%s", share_names[measure.share], looks[measure.look].name);
     row.what = name;
     for (int j = 0; j < 2; j++) {
       row.renderer = j == 0 ? "frame" : "fragments";

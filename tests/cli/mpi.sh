@@ -145,6 +145,27 @@ accept render cube.vtu $small --pixel-type double -o w.tif
 fine 3 cube.vtu $small --pixel-type double -o m.tif
 near w.tif m.tif 1e-9 'five cells'
 
+# Coefficients, with what they have for each group.
+python3 "$here/pieces.py" make tetrahedra 5 scattered groups
+direct="$small --pixel-type double --extinction k --emission j --groups --channels"
+for channels in radiance,optical_depth,transmittance,path_length transmittance; do
+  accept render whole.vtu $direct $channels -o whole.tif
+  for ranks in 1 3; do
+    fine $ranks plain.pvtu $direct $channels -o $ranks.tif
+  done
+  same 1.tif 3.tif "groups: $channels"
+  near whole.tif 1.tif 5e-14 "groups: $channels"
+  fine 2 whole.vtu $direct $channels -o split.tif
+  near whole.tif split.tif 5e-14 "groups of a file that is split: $channels"
+done
+for options in '--extinction k:3' '--emission j:0' '--extinction k:mag --channels path_length'; do
+  accept render whole.vtu $small --pixel-type double $options -o w.tif
+  fine 3 ghosts.pvtu $small --pixel-type double $options -o m.tif
+  near w.tif m.tif 5e-14 "coefficients: $options"
+done
+fault 2 1 'the channel error is not possible with parts on several ranks' plain.pvtu $direct error -o no.tif
+fault 3 1 "has no array 'none'" plain.pvtu $small --extinction none -o no.png
+
 python3 "$here/pieces.py" make hexahedra 4 boxes
 # Hexahedra, whose pieces number their points each in its way: none cuts a face otherwise than its neighbour.
 fine 1 plain.pvtu $exact -o h1.tif --stats h.stats

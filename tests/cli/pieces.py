@@ -2,8 +2,8 @@
 # Meshes in pieces for mpi.sh, and the difference of two pictures.
 #   pieces.py make CELLS PIECES PARTITION [ARRAYS]: whole.vtu, and lists of pieces: plain.pvtu; ghosts.pvtu, whose pieces have
 #   marked copies of their neighbours' cells; unmarked.pvtu, in which nothing tells copies. CELLS: tetrahedra or
-#   hexahedra; PARTITION: boxes, or scattered at random; ARRAYS: quantities, or
-#   labels, or none.
+#   hexahedra; PARTITION: boxes, or scattered at random; ARRAYS: quantities, groups, of which each has
+#   nine, labels, or none.
 #   pieces.py differ A.tif B.tif: the largest difference of two pictures of doubles.
 import array
 import math
@@ -56,7 +56,11 @@ def make(kind, pieces, partition, arrays="quantities"):
                        '<Piece NumberOfPoints="%d" NumberOfCells="%d">\n<PointData>' % (len(used), len(every)))
             if arrays == "quantities":
                 file.write(data("s", "Float64", (repr(values[v]) for v in used)))
+            if arrays == "groups":
+                file.write(data("k", "Float64", (repr(abs(values[v]) * (g + 1)) for v in used for g in range(9)), 9))
             file.write("</PointData><CellData>")
+            if arrays == "groups":
+                file.write(data("j", "Float64", (repr(sum(cubes[c]) - g / 3) for c in every for g in range(9)), 9))
             if arrays == "quantities":
                 file.write(data("c", "Float64", (sum(cubes[c]) + 0.5 for c in every)))
             if arrays == "labels":  # of which a piece has some only

@@ -4,7 +4,7 @@
 
 #include <float.h>
 
-enum { W = 24, H = 18, PIXELS = W * H, MOST = 8 };
+enum { W = 24, H = 18, PIXELS = W * H, MOST = 9 };
 static const uint32_t all_channels = TETCAST_CHANNEL_RADIANCE | TETCAST_CHANNEL_OPTICAL_DEPTH |
                                      TETCAST_CHANNEL_TRANSMITTANCE | TETCAST_CHANNEL_PATH_LENGTH;
 
@@ -548,6 +548,38 @@ static void emission_is_linear(void **state) {
   world_end(&world);
 }
 
+/* More groups than a vector has lanes, and not a multiple of them: what lies behind the last one in memory, here
+ * emission that would be no extinction at all, stays out of it. */
+static void lanes_beyond_the_last_group(void **state) {
+  (void)state;
+  World world;
+  world_begin(&world, 12, 0.5, 1, TETCAST_TRAVERSAL_SHELL, 2);
+  Values extinction[MOST], emission[MOST];
+  uint64_t seed = 3;
+  for (int g = 0; g < MOST; ++g) {
+    double *values = constant(world.cube.vertex_count, 0);
+    for (int64_t i = 0; i < world.cube.vertex_count; ++i)
+      values[i] = 300 * (uniform(&seed) - 0.5);
+    extinction[g] = (Values){constant(world.cube.vertex_count, 40), TETCAST_POINT};
+    emission[g] = (Values){values, TETCAST_POINT};
+  }
+  const TetcastCamera camera = camera_of(2.1, 1.7, 3.3, 0.5, 0.5, 0.5);
+  assert_int_equal(set(&world, extinction, MOST, emission, MOST), TETCAST_OK);
+  TetcastFrame *all = shoot(&world, &camera, all_channels, 64);
+  assert_int_equal(set(&world, &extinction[MOST - 1], 1, &emission[MOST - 1], 1), TETCAST_OK);
+  TetcastFrame *last = shoot(&world, &camera, all_channels, 64);
+  for (int p = 0; p < PIXELS; ++p)
+    assert_true(fabs(channel(all, TETCAST_CHANNEL_RADIANCE)[MOST * p + MOST - 1] -
+                     channel(last, TETCAST_CHANNEL_RADIANCE)[p]) < 1e-13);
+  tetcast_frame_destroy(&all);
+  tetcast_frame_destroy(&last);
+  for (int g = 0; g < MOST; ++g) {
+    free((double *)extinction[g].data);
+    free((double *)emission[g].data);
+  }
+  world_end(&world);
+}
+
 /* Three groups are red, green and blue; another number is grey, their mean. */
 static void colors(void **state) {
   (void)state;
@@ -754,6 +786,7 @@ int main(void) {
                                      cmocka_unit_test(largest_values),
                                      cmocka_unit_test(values_that_are_not_finite),
                                      cmocka_unit_test(emission_is_linear),
+                                     cmocka_unit_test(lanes_beyond_the_last_group),
                                      cmocka_unit_test(colors),
                                      cmocka_unit_test(bad_coefficients_are_refused),
                                      cmocka_unit_test(either_replaces_the_other),

@@ -326,7 +326,7 @@ static void wrong_fragments_are_refused(void **state) {
   TetcastFrame *frame = frame_of(fixture.context, 0);
   static const TetcastFragment good = {.pixel = 3, .begin = 1, .end = 2, .optical_depth = 1};
   TetcastFragment data[2] = {good, good};
-  const TetcastFragmentList lists[2] = {{NULL, 0}, {data, 2}};
+  const TetcastFragmentList lists[2] = {{.count = 0}, {.data = data, .count = 2}};
   assert_int_equal(tetcast_fragments_composite(fixture.context, lists, 2, frame, NULL), TETCAST_OK);
   assert_int_equal(tetcast_fragments_composite(fixture.context, NULL, 0, frame, NULL), TETCAST_OK);
   assert_int_equal(tetcast_fragments_composite(fixture.context, NULL, 1, frame, NULL), TETCAST_ERROR_ARGUMENT);
