@@ -137,6 +137,30 @@ TC_INLINE void tc_load_records(const TcReal *const at[TC_LANES], TcVec component
 }
 
 #if !TC_SINGLE
+/* The inverse: the lanes' four numbers go to each lane's address. */
+TC_INLINE void tc_store_records(TcReal *const at[TC_LANES], const TcVec component[4]) {
+  for (int j = 0; j < 2; ++j) { /* the even lanes, the odd ones */
+    const __m256d a = j ? _mm256_unpackhi_pd(TC_R(component[0]), TC_R(component[1]))
+                        : _mm256_unpacklo_pd(TC_R(component[0]), TC_R(component[1]));
+    const __m256d b = j ? _mm256_unpackhi_pd(TC_R(component[2]), TC_R(component[3]))
+                        : _mm256_unpacklo_pd(TC_R(component[2]), TC_R(component[3]));
+    _mm256_storeu_pd(at[j], _mm256_permute2f128_pd(a, b, 0x20));
+    _mm256_storeu_pd(at[j + 2], _mm256_permute2f128_pd(a, b, 0x31));
+  }
+}
+
+TC_INLINE TcMask tc_eq_word(TcWord a, TcWord b) {
+  return (TcMask)_mm256_cvtepi32_epi64(_mm_cmpeq_epi32((__m128i)a, (__m128i)b));
+}
+
+/* Two words next to each other in memory, in the place of a number. */
+TC_INLINE TcVec tc_two_words(TcWord first, TcWord second) {
+  const __m256i low = _mm256_cvtepu32_epi64((__m128i)first), high = _mm256_cvtepu32_epi64((__m128i)second);
+  return (TcVec)_mm256_or_si256(low, _mm256_slli_epi64(high, 32));
+}
+#endif
+
+#if !TC_SINGLE
 /* The same of numbers in single precision. */
 TC_INLINE void tc_load_float_records(const float *const at[TC_LANES], TcVec component[4]) {
   /* A 4 × 4 transpose. */

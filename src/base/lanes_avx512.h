@@ -210,6 +210,33 @@ TC_INLINE TcVec tc_lookup(const TcReal table[TC_LANES], TcInt at) {
 }
 
 #if !TC_SINGLE
+/* The inverse of loading records: the lanes' four numbers go to each lane's address. */
+TC_INLINE void tc_store_records(TcReal *const at[TC_LANES], const TcVec component[4]) {
+  const __m512i front = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13),
+                back = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+  for (int j = 0; j < 2; ++j) { /* the even lanes, the odd ones */
+    const __m512d a = j ? _mm512_unpackhi_pd(TC_R(component[0]), TC_R(component[1]))
+                        : _mm512_unpacklo_pd(TC_R(component[0]), TC_R(component[1]));
+    const __m512d b = j ? _mm512_unpackhi_pd(TC_R(component[2]), TC_R(component[3]))
+                        : _mm512_unpacklo_pd(TC_R(component[2]), TC_R(component[3]));
+    const __m512d outer = _mm512_permutex2var_pd(a, front, b), inner = _mm512_permutex2var_pd(a, back, b);
+    _mm256_storeu_pd(at[j], _mm512_castpd512_pd256(outer));
+    _mm256_storeu_pd(at[j + 2], _mm512_castpd512_pd256(inner));
+    _mm256_storeu_pd(at[j + 4], _mm512_extractf64x4_pd(outer, 1));
+    _mm256_storeu_pd(at[j + 6], _mm512_extractf64x4_pd(inner, 1));
+  }
+}
+
+TC_INLINE TcMask tc_eq_word(TcWord a, TcWord b) {
+  return _mm256_cmpeq_epi32_mask((__m256i)a, (__m256i)b);
+}
+
+/* Two words next to each other in memory, in the place of a number. */
+TC_INLINE TcVec tc_two_words(TcWord first, TcWord second) {
+  const __m512i low = _mm512_cvtepu32_epi64((__m256i)first), high = _mm512_cvtepu32_epi64((__m256i)second);
+  return (TcVec)_mm512_or_si512(low, _mm512_slli_epi64(high, 32));
+}
+
 /* The lanes of v moved up by one, and the last lane of `before` in the first. */
 TC_INLINE TcVec tc_shift_in(TcVec before, TcVec v) {
   return (TcVec)_mm512_alignr_epi64((__m512i)v, (__m512i)before, 7);

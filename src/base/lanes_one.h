@@ -107,3 +107,18 @@ TC_INLINE TcVec tc_shift_in(TcVec before, TcVec v) {
   (void)v;
   return before;
 }
+
+/* The inverse: the lanes' four numbers go to each lane's address. */
+TC_INLINE void tc_store_records(TcReal *const at[TC_LANES], const TcVec component[4]) {
+  for (int k = 0; k < 4; ++k)
+    at[0][k] = component[k];
+}
+
+TC_INLINE TcMask tc_eq_word(TcWord a, TcWord b) {
+  return a == b;
+}
+
+/* Two words next to each other in memory, in the place of a number. */
+TC_INLINE TcVec tc_two_words(TcWord first, TcWord second) {
+  return tc_of_bits((TcInt)((uint64_t)first | (uint64_t)second << 32));
+}

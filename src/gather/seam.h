@@ -32,6 +32,7 @@
 
 /* What gatherers are given; each of them uses a part of it. */
 typedef struct TcGatherJob {
+  const TetcastVolume *volume;        /* whose cells rays cross */
   int sums;                           /* how many numbers end() hands out for each lane */
   const TcPieces *pieces;             /* the transfer function, in the volume's units */
   const TcSecond *second;             /* with TC_SECOND: what the transfer function is in cells; pieces are its hull */

@@ -30,7 +30,7 @@ typedef struct Caster {
 
 typedef struct Casting {
   const TetcastScene *scene;
-  const TetcastRays *rays;
+  TcRayList list;
   const TetcastCastResult *result;
   const TcIsaKernels *kernels;
   bool gathers;    /* whether what the ray of a pixel gathers is wanted at all */
@@ -114,7 +114,8 @@ static TetcastStatus plan(Casting *casting, TetcastIsa isa) {
   render->bounded = result->error != NULL;
   tc_job_of_scene(scene, render->bounded, job);
   status = plan_more(casting);
-  const double away = tc_rays_away(casting->rays, scene->volume);
+  /* How far origins are away tells for bounds on errors alone, and for what is clipped within them. */
+  const double away = render->bounded || scene->clip_count > 0 ? tc_rays_away(&casting->list) : 0;
   job->interval_error = casting->depth.interval_error = casting->length.interval_error =
       tc_clip_error(scene->volume, away);
   job->resolution = tc_ray_resolution(scene->volume, away, scene->values ? scene->values->largest : 0);
@@ -128,11 +129,8 @@ static TetcastStatus plan(Casting *casting, TetcastIsa isa) {
 static bool find_keys(void *data, int64_t begin, int64_t end, int worker) {
   (void)worker;
   const Casting *casting = data;
-  const TetcastVolume *volume = casting->scene->volume;
   for (int64_t i = begin; i < end; ++i) {
-    TcRayUnit unit;
-    const TcLine line = tc_rays_line(casting->rays, volume, casting->first + i, &unit);
-    casting->records[i] = tc_record(tc_rays_key(&line, volume), (uint32_t)i);
+    casting->records[i] = tc_record(tc_rays_key(&casting->list, casting->first + i), (uint32_t)i);
   }
   return true;
 }
@@ -198,6 +196,23 @@ static bool walk(const Casting *casting, const TcJob *job, Caster *caster, int c
   return casting->kernels->cast(job, caster->lines, count, &caster->worker, sums);
 }
 
+/* Takes the rays of a batch; both they and the places of their results are all over memory. */
+static void take_rays(const Casting *casting, Caster *caster, const uint64_t *records, int count) {
+  enum { AHEAD = 12 };
+  const double *color = casting->result->color;
+  for (int i = -AHEAD; i < count; ++i) {
+    if (i + AHEAD < count) {
+      const int64_t ahead = casting->first + tc_record_value(records[i + AHEAD]);
+      tc_rays_expect(&casting->list, ahead);
+      if (color)
+        __builtin_prefetch(color + 4 * ahead, 1);
+    }
+    TcRayUnit unit;
+    if (i >= 0)
+      tc_rays_line(&casting->list, casting->first + tc_record_value(records[i]), &caster->lines[i], &unit);
+  }
+}
+
 static bool cast_batches(void *data, int64_t begin, int64_t end, int worker) {
   const Casting *casting = data;
   const TcJob *job = &casting->render.job;
@@ -206,11 +221,7 @@ static bool cast_batches(void *data, int64_t begin, int64_t end, int worker) {
     const uint64_t *records = casting->records + batch * BATCH;
     const int64_t left = casting->count - batch * BATCH;
     const int count = left < BATCH ? (int)left : BATCH;
-    for (int i = 0; i < count; ++i) {
-      TcRayUnit unit;
-      caster->lines[i] =
-          tc_rays_line(casting->rays, casting->scene->volume, casting->first + tc_record_value(records[i]), &unit);
-    }
+    take_rays(casting, caster, records, count);
     if (!walk(casting, job, caster, count, caster->sums) ||
         !walk(casting, &casting->depth, caster, count, caster->depths) ||
         !walk(casting, &casting->length, caster, count, caster->lengths))
@@ -254,7 +265,7 @@ static TetcastStatus run_slice(Casting *casting, uint64_t **scratch, const Tetca
 
 static TetcastStatus run(Casting *casting, const TetcastProgress *progress) {
   TetcastContext *context = casting->scene->context;
-  const int64_t all = casting->rays->origins.count, most = all < SLICE ? all : SLICE;
+  const int64_t all = casting->list.rays->origins.count, most = all < SLICE ? all : SLICE;
   uint64_t *scratch = NULL;
   TetcastStatus status = TETCAST_OK;
   if (!tc_allocate_array(context, (void **)&casting->records, most, sizeof *casting->records, "order of rays") ||
@@ -271,6 +282,16 @@ static TetcastStatus run(Casting *casting, const TetcastProgress *progress) {
   tc_release(context, casting->records);
   tc_release(context, scratch);
   return status;
+}
+
+/* Prepares vertices for rays of the given number. */
+static void prepare_points(Casting *casting) {
+  const TetcastScene *scene = casting->scene;
+  TcJob *job = &casting->render.job;
+  if (!tc_worth_preparing(job->shell, casting->list.rays->origins.count))
+    return;
+  casting->render.points = tc_points_prepare(scene->volume, scene->values, tc_scene_swap_vertices(scene, false, NULL));
+  job->points = casting->depth.points = casting->length.points = casting->render.points;
 }
 
 /* Frees what the workers have, and sums up what they have counted. */
@@ -318,11 +339,16 @@ static double largest_error(const TetcastCastResult *result, int64_t count) {
 
 TetcastStatus tc_scene_cast(const TetcastScene *scene, const TetcastRays *rays, const TetcastCastDesc *desc,
                             const TetcastCastResult *result, TetcastRenderStats *stats) {
-  Casting casting = {.scene = scene, .rays = rays, .result = result, .render = {.scene = scene}};
+  Casting casting = {
+      .scene = scene, .list = tc_rays_list(rays, scene->volume), .result = result, .render = {.scene = scene}};
   TetcastStatus status = plan(&casting, desc->isa);
   TetcastRenderStats sum = {.rays = rays->origins.count};
-  if (!status)
+  if (!status) {
+    prepare_points(&casting);
     status = run_threads(&casting, &desc->progress, &sum);
+  }
+  if (casting.render.points)
+    tc_release(scene->context, tc_scene_swap_vertices(scene, false, casting.render.points));
   tc_transfer_destroy(casting.thin);
   tc_forget_looks(scene->context, &casting.render);
   if (status || !stats)

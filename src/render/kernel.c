@@ -371,9 +371,11 @@ static State *prepare(const TcJob *job, TcWorker *worker) {
                              .values = job->values,
                              .holes = job->values && job->values->has_holes,
                              .screen = job->screen,
+                             .vertices = job->screen ? job->screen->vertices : job->points,
                              .resolution = job->resolution,
                              .surfaces = job->surfaces};
-  state->job = (TcGatherJob){.sums = job->sums,
+  state->job = (TcGatherJob){.volume = job->shell->volume,
+                             .sums = job->sums,
                              .pieces = job->pieces,
                              .second = job->second,
                              .values = job->values,
@@ -677,6 +679,7 @@ static bool render_samples(const TcJob *job, const TcSample *samples, int64_t co
 
 /* ── any rays ── */
 
+#if !TC_SINGLE
 typedef struct Cast {
   const TcJob *job;
   const TcGround *ground;
@@ -689,25 +692,30 @@ typedef struct Cast {
 static void place_cast(Cast *cast) {
   TcPlaced *placed = cast->placed;
   TcLines *lines = &placed->lines;
+  const double *eye[TC_LANES], *direction[TC_LANES], *offset[TC_LANES];
   placed->lanes = 0;
   TC_EACH_LANE {
     const TcLine *line = &cast->lines[cast->next < cast->count ? cast->next : 0];
-    for (int k = 0; k < 3; ++k) {
-      TC_AT(lines->eye[k], l) = line->eye[k];
-      TC_AT(lines->offset[k], l) = line->offset[k];
-      TC_AT(lines->direction[k], l) = line->direction[k];
-    }
-    TC_AT(lines->begin, l) = line->begin;
-    TC_AT(lines->end, l) = line->end;
+    eye[l] = line->eye;
+    direction[l] = line->direction;
+    offset[l] = line->offset;
     placed->destination[l] = cast->next;
-    if (cast->next++ < cast->count)
-      placed->lanes |= 1U << l;
+    placed->lanes |= (unsigned)(cast->next < cast->count) << l;
+    ++cast->next;
   }
+  TcVec eyes[4], directions[4], offsets[4]; /* and begins, ends, and what is unused */
+  tc_load_records(eye, eyes);
+  tc_load_records(direction, directions);
+  tc_load_records(offset, offsets);
+  memcpy(lines->eye, eyes, sizeof lines->eye);
+  memcpy(lines->direction, directions, sizeof lines->direction);
+  memcpy(lines->offset, offsets, sizeof lines->offset);
+  lines->begin = eyes[3];
+  lines->end = directions[3];
   place_rays(cast->job, cast->ground, NULL, cast->sums, placed);
-  TC_EACH_LANE { /* where the ray begins or ends by itself */
-    if (TC_AT(lines->begin, l) != 0 || TC_AT(lines->end, l) < INFINITY)
-      TC_AT(placed->doubt, l) += cast->job->interval_error;
-  }
+  /* Where the ray begins or ends by itself. */
+  const TcMask whole = tc_and_not(tc_eq(lines->begin, tc_set(0)), tc_lt(lines->end, tc_set(INFINITY)));
+  placed->doubt += tc_select(whole, tc_set(0), tc_set(cast->job->interval_error));
 }
 
 static bool next_of_cast(void *user, TcQueue *queue) {
@@ -727,6 +735,9 @@ static bool cast_lines(const TcJob *job, const TcLine *lines, int64_t count, TcW
   const Source source = {next_of_cast, &cast, sums};
   return run_packets(job, state, worker, &source);
 }
+#else
+#define cast_lines NULL
+#endif
 
 #include "walk/project.h"
 

@@ -44,6 +44,7 @@ typedef struct TcJob {
   const TcPieces *pieces;  /* the transfer function, in the volume's units; NULL if only values are gathered */
   const TcSecond *second;  /* a transfer function of two dimensions, with `pieces` as its hull; NULL: it has one */
   const TcScreen *screen;  /* the projected vertices; NULL if rays are walked in ray space */
+  const double *points;    /* [vertex_count][4], for ray space, by tc_rows_points(); NULL: the arrays of the volume */
   TcTolerance tolerance;   /* of emission and absorption */
   TcResolution resolution; /* with TC_BOUND: what rounding does to vertices */
   int sums;                /* how many numbers are gathered for a ray */
@@ -105,7 +106,8 @@ typedef struct TcIsaKernels {
   /* Adds what the rays of samples of a picture gather to sums[sample.pixel][job->sums]. */
   bool (*samples)(const TcJob *job, const TcSample *samples, int64_t count, TcWorker *worker, double *sums);
 
-  /* Adds what rays of any kind gather to sums[ray][job->sums]. They are walked in ray space. */
+  /* Adds what rays of any kind gather to sums[ray][job->sums]. They are walked in ray space. NULL in single precision.
+   */
   bool (*cast)(const TcJob *job, const TcLine *lines, int64_t count, TcWorker *worker, double *sums);
 } TcIsaKernels;
 

@@ -266,19 +266,6 @@ static bool project_some(void *data, int64_t begin, int64_t end, int worker) {
   return true;
 }
 
-/* Whether projecting all vertices once is faster than moving them into the space of each ray that meets them.
- * Projecting one vertex takes about as long as a dozen steps of a ray become faster by it, so it doesn't pay for small
- * pictures of large meshes, nor where little of the mesh is seen. The number of steps is estimated as if the mesh were
- * a cube, of which each ray crosses half as many cells as ∛cell_count. Parts of a larger mesh must not differ in it, as
- * rays that pass from one to another would pass edges on different sides. */
-static bool worth_projecting(const TetcastScene *scene, int64_t rays, const TcJob *job) {
-  if (scene->volume->is_part)
-    return true;
-  const double cells = (double)scene->volume->cell_count, crossings = 0.5 * (double)rays * cbrt(cells);
-  const double share = job->shell->visible ? (double)job->shell->visible_cells / cells : 1;
-  return share * crossings > 3 * (double)scene->volume->vertex_count;
-}
-
 /* Projects the vertices; the job uses `screen` from then on. It is an error if memory runs out: rays could be walked
  * without projected vertices, but their results are rounded differently, and no bit of a picture may depend on how much
  * memory there is. */
@@ -297,10 +284,11 @@ static TetcastStatus project(const TetcastScene *scene, const TcIsaKernels *kern
   return TETCAST_OK;
 }
 
-/* Keeps the memory of projected vertices for the scene's next picture. */
-static void keep_vertices(const TetcastScene *scene, const TcJob *job, bool single) {
-  if (job->screen)
-    tc_release(scene->context, tc_scene_swap_vertices(scene, single, job->screen->vertices));
+/* Keeps the memory of prepared vertices for the scene's next picture. */
+static void keep_vertices(const TetcastScene *scene, const TcRender *render, bool single) {
+  void *vertices = render->job.screen ? render->job.screen->vertices : render->points;
+  if (vertices)
+    tc_release(scene->context, tc_scene_swap_vertices(scene, single, vertices));
 }
 
 /* ── all of it ── */
@@ -346,8 +334,8 @@ static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *de
   TcJob *job = &render->job;
   TcScreen setup;
   const int64_t rays = job->width * job->height * desc->samples;
-  const bool on_screen = scene->volume->traversal == TETCAST_TRAVERSAL_SHELL && worth_projecting(scene, rays, job) &&
-                         tc_screen_setup(scene->volume, &job->view, job->width, job->height, &setup);
+  const bool worth = tc_worth_preparing(job->shell, rays);
+  const bool on_screen = worth && tc_screen_setup(scene->volume, &job->view, job->width, job->height, &setup);
   double away2 = 0;
   for (int k = 0; k < 3; ++k)
     away2 += (scene->volume->center[k] - job->view.eye[k]) * (scene->volume->center[k] - job->view.eye[k]);
@@ -358,6 +346,10 @@ static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *de
       on_screen ? tc_screen_resolution(scene->volume, &setup, false, job->width, job->height, largest) : in_ray_space;
   if (job->pieces)
     job->tolerance = tc_tolerance_begin(job->pieces, brightest_of(job), desc->tolerance);
+  if (worth && !on_screen) {
+    render->points = tc_points_prepare(scene->volume, scene->values, tc_scene_swap_vertices(scene, false, NULL));
+    job->points = render->points;
+  }
   if (!on_screen)
     return TETCAST_OK;
   if (measured && job->pieces && allow_single(scene, desc, &setup, render)) {
@@ -528,7 +520,7 @@ TetcastStatus tc_render(const TetcastScene *scene, const TetcastCamera *camera, 
     plan_count(&render);
   if (!status)
     status = run(&render, desc, &sum);
-  keep_vertices(scene, job, job->precise != NULL);
+  keep_vertices(scene, &render, job->precise != NULL);
   tc_sampler_destroy(sampler);
   tc_forget_looks(context, &render);
   if (!measured || desc->adaptive_coarse > 0)

@@ -127,7 +127,18 @@ TetcastStatus tc_scene_set_coefficients(TetcastScene *scene, const TetcastCoeffi
 TetcastStatus tc_scene_set_clip(TetcastScene *scene, const TetcastHalfSpace *half_spaces, int count);
 /* Prepares the scene for its field and transfer function, unless that has been done. */
 TetcastStatus tc_scene_prepare(const TetcastScene *scene);
-/* Takes the memory for projected vertices that the scene keeps (`vertices` NULL), or gives it back. Returns what the
+/* Whether preparing all vertices once, by projecting them or as tc_points_prepare() does, is faster than making of them
+ * what rays need wherever one meets them. Projecting one vertex takes about as long as a dozen steps of a ray become
+ * faster by it, so it doesn't pay for small pictures of large meshes, nor where little of the mesh is seen. The number
+ * of steps is estimated as if the mesh were a cube, of which each ray crosses half as many cells as ∛cell_count. Parts
+ * of a larger mesh must not differ in it, as rays that pass from one to another would pass edges on different sides. */
+bool tc_worth_preparing(const TcShell *shell, int64_t rays);
+/* Puts vertices next to their scalars, as rays in ray space read them fastest (TcJob.points), in memory for as many
+ * times four doubles or, if that is NULL, in new memory, which the caller frees. NULL: there is none. What rays gather
+ * has the same bits without. */
+double *tc_points_prepare(const TetcastVolume *volume, const TcRows *values, void *memory);
+
+/* Takes the memory for prepared vertices that the scene keeps (`vertices` NULL), or gives it back. Returns what the
  * scene had before, or NULL. */
 void *tc_scene_swap_vertices(const TetcastScene *scene, bool single, void *vertices);
 

@@ -19,6 +19,7 @@ typedef struct TcRender {
   TetcastFrame *frame;
   const TcIsaKernels *kernels;
   TcScreen screen;
+  double *points; /* vertices prepared for ray space; NULL: they are not */
   TcSurfaces surfaces;
   TcLights lights;
   struct TcFragmentWork *fragments; /* where fragments go, in place of a picture; NULL: it is a picture */

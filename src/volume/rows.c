@@ -244,3 +244,11 @@ TetcastStatus tc_rows_of_scalar(const TetcastVolume *volume, const TetcastField 
   *out = rows;
   return TETCAST_OK;
 }
+
+void tc_rows_points(const TetcastVolume *volume, const TcRows *rows, int64_t begin, int64_t end, double (*points)[4]) {
+  const bool of_points = rows && rows->association == TETCAST_POINT;
+  for (int64_t i = begin; i < end; ++i) {
+    tc_volume_vertex(volume, (uint32_t)i, points[i - begin]);
+    points[i - begin][3] = of_points ? tc_rows_value(rows, i, 0) : 0;
+  }
+}

@@ -45,6 +45,11 @@ bool tc_field_jumps(const TetcastVolume *volume, const TetcastField *field);
 TetcastStatus tc_rows_of_fields(const TetcastVolume *volume, const TetcastField *const *fields, int width,
                                 TcRows **rows);
 
+/* Puts next to each other what rays in a space of their own need of the vertices from `begin` up to `end`: the
+ * position, scaled, and the scalar, if it is one of points; else 0. `rows` may be NULL. The first of `points` is that
+ * of vertex `begin`. */
+void tc_rows_points(const TetcastVolume *volume, const TcRows *rows, int64_t begin, int64_t end, double (*points)[4]);
+
 /* Counts one user more. */
 void tc_rows_retain(TcRows *rows);
 

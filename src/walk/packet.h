@@ -100,11 +100,11 @@ TC_INLINE void tc_packet_expect(const TcGround *ground, TcPacket *p) {
   TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) {
     const uint32_t next = cells[5 * (size_t)p->cell[l]] ^ p->face[l];
     p->vertex[l] = next;
-    if (TC_SINGLE || ground->screen)
-      __builtin_prefetch((const TcReal *)ground->screen->vertices + 4 * (size_t)next);
+    if (TC_SINGLE || ground->vertices)
+      __builtin_prefetch((const TcReal *)ground->vertices + 4 * (size_t)next);
   }
 #if !TC_SINGLE
-  if (TC_UNLIKELY(!ground->screen))
+  if (TC_UNLIKELY(!ground->vertices))
     tc_points_expect(ground, p->vertex);
 #endif
   TC_IN_MEMORY(p->vertex);

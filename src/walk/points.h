@@ -24,7 +24,9 @@ typedef struct TcGround {
   const TcShell *shell;
   const TcRows *values;       /* the scalar; NULL if there is none */
   bool holes;                 /* whether cells are transparent because the scalar has no value at some vertices */
-  const TcScreen *screen;     /* the projected vertices; NULL if rays are walked in ray space */
+  const TcScreen *screen;     /* how vertices have been projected; NULL if rays are walked in ray space */
+  const void *vertices;       /* [vertex_count][4], of TcReal: what vertices are loaded from, on the screen that of
+                                 TcScreen, in ray space that of tc_rows_points(); NULL: the volume's own arrays */
   TcResolution resolution;    /* with TC_BOUND: what rounding does to vertices */
   const TcSurfaces *surfaces; /* NULL: there are none, and packets need not know the directions of their rays */
 } TcGround;
@@ -63,12 +65,7 @@ typedef struct TcLanePoints {
 
 /* ── on the screen ── */
 
-TC_INLINE void tc_points_on_screen(const void *vertices, const TcRays *rays, const uint32_t id[TC_LANES],
-                                   TcLanePoints *p) {
-  const TcReal *at[TC_LANES];
-  TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) at[l] = (const TcReal *)vertices + 4 * (size_t)id[l];
-  TcVec component[4];
-  tc_load_records(at, component);
+TC_INLINE void tc_points_on_screen(const TcVec component[4], const TcRays *rays, TcLanePoints *p) {
 #if TC_SINGLE
   /* Differences of integers are exact. Rounding them is relative to the distance from the ray. */
   p->x = tc_to_real(tc_bits_of(component[0]) - rays->x);
@@ -93,9 +90,23 @@ TC_INLINE void tc_shear(const TcRays *rays, const TcVec component[3], TcLanePoin
   p->d = z * rays->inverse_z - rays->rest_z;
 }
 
+/* The components of positions along kx, ky and kz. */
+TC_INLINE void tc_turn(int kz, const TcVec axis[3], TcVec component[3]) {
+  component[0] = kz == 2 ? axis[0] : kz == 1 ? axis[2] : axis[1];
+  component[1] = kz == 2 ? axis[1] : kz == 1 ? axis[0] : axis[2];
+  component[2] = kz == 2 ? axis[2] : kz == 1 ? axis[1] : axis[0];
+}
+
+TC_INLINE void tc_points_in_ray_space(const TcVec axis[4], const TcRays *rays, TcLanePoints *p) {
+  TcVec component[3];
+  tc_turn(rays->kz, axis, component);
+  tc_shear(rays, component, p);
+  p->s = axis[3];
+}
+
 /* The number that follows the last vertex is there (volume.h), so that four may be read at once. */
-TC_NOINLINE void tc_points_in_ray_space(const TcGround *ground, const TcRays *rays, const uint32_t id[TC_LANES],
-                                        TcLanePoints *p) {
+TC_NOINLINE void tc_points_of_arrays(const TcGround *ground, const TcRays *rays, const uint32_t id[TC_LANES],
+                                     TcLanePoints *p) {
   const TetcastVolume *volume = ground->shell->volume;
   TcVec axis[4], s = tc_set(0);
   if (volume->positions_are_double) {
@@ -107,16 +118,8 @@ TC_NOINLINE void tc_points_in_ray_space(const TcGround *ground, const TcRays *ra
     TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) at[l] = (const float *)volume->positions + 3 * (size_t)id[l];
     tc_load_float_records(at, axis);
   }
-  const int kz = rays->kz;
-  const TcVec component[3] = {kz == 2   ? axis[0]
-                              : kz == 1 ? axis[2]
-                                        : axis[1],
-                              kz == 2   ? axis[1]
-                              : kz == 1 ? axis[0]
-                                        : axis[2],
-                              kz == 2   ? axis[2]
-                              : kz == 1 ? axis[1]
-                                        : axis[0]};
+  TcVec component[3];
+  tc_turn(rays->kz, axis, component);
   if (ground->values && ground->values->association == TETCAST_POINT) {
     for (int l = 0; l < TC_LANES; ++l)
       TC_AT(s, l) = tc_rows_value(ground->values, id[l], 0);
@@ -136,8 +139,12 @@ TC_NOINLINE void tc_points_expect(const TcGround *ground, const uint32_t id[TC_L
 /* Loads one vertex for all lanes, without its scalar. */
 TC_INLINE void tc_point_in_ray_space(const TcGround *ground, const TcRays *rays, uint32_t id, TcLanePoints *p) {
   const int kx = rays->kz == 2 ? 0 : rays->kz + 1, ky = rays->kz == 0 ? 2 : rays->kz - 1;
-  double position[3];
-  tc_volume_vertex(ground->shell->volume, id, position);
+  double own[3];
+  const double *position = (const double *)ground->vertices + 4 * (size_t)id;
+  if (TC_UNLIKELY(!ground->vertices)) {
+    tc_volume_vertex(ground->shell->volume, id, own);
+    position = own;
+  }
   const TcVec component[3] = {tc_set(position[kx]), tc_set(position[ky]), tc_set(position[rays->kz])};
   tc_shear(rays, component, p);
 }
@@ -146,14 +153,23 @@ TC_INLINE void tc_point_in_ray_space(const TcGround *ground, const TcRays *rays,
 /* Loads a vertex for each lane. */
 TC_INLINE void tc_points_load(const TcGround *ground, const TcRays *rays, const uint32_t id[TC_LANES],
                               TcLanePoints *p) {
-#if TC_SINGLE
-  tc_points_on_screen(ground->screen->vertices, rays, id, p);
-#else
-  if (TC_LIKELY(ground->screen != NULL))
-    tc_points_on_screen(ground->screen->vertices, rays, id, p);
-  else
-    tc_points_in_ray_space(ground, rays, id, p);
+#if !TC_SINGLE
+  if (TC_UNLIKELY(!ground->vertices)) {
+    tc_points_of_arrays(ground, rays, id, p);
+    p->id = tc_load_word(id);
+    return;
+  }
 #endif
+  const TcReal *at[TC_LANES];
+  TC_UNROLLED for (int l = 0; l < TC_LANES; ++l) at[l] = (const TcReal *)ground->vertices + 4 * (size_t)id[l];
+  TcVec number[4];
+  tc_load_records(at, number);
+#if !TC_SINGLE
+  if (TC_UNLIKELY(!ground->screen))
+    tc_points_in_ray_space(number, rays, p);
+  else
+#endif
+    tc_points_on_screen(number, rays, p);
   p->id = tc_load_word(id);
 }
 
@@ -168,7 +184,7 @@ TC_INLINE void tc_points_of_one(const TcGround *ground, const TcRays *rays, uint
     return;
   }
 #endif
-  const TcReal *at = (const TcReal *)ground->screen->vertices + 4 * (size_t)id;
+  const TcReal *at = (const TcReal *)ground->vertices + 4 * (size_t)id;
 #if TC_SINGLE
   int32_t x[2];
   memcpy(x, at, sizeof x);
@@ -194,12 +210,12 @@ TC_INLINE void tc_point_beside(const TcGround *ground, const TcRays *rays, uint3
     *y = p.y;
     return;
   }
-  const TcReal *at = (const TcReal *)ground->screen->vertices + 4 * (size_t)id;
+  const TcReal *at = (const TcReal *)ground->vertices + 4 * (size_t)id;
   *x = rays->x - at[0];
   *y = rays->y - at[1];
 #else
   int32_t at[2];
-  memcpy(at, (const TcReal *)ground->screen->vertices + 4 * (size_t)id, sizeof at);
+  memcpy(at, (const TcReal *)ground->vertices + 4 * (size_t)id, sizeof at);
   *x = tc_to_real(rays->x - at[0]);
   *y = tc_to_real(rays->y - at[1]);
 #endif

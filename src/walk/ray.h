@@ -13,8 +13,12 @@
 /* A ray as it is asked for. It goes from eye + offset along the unit vector `direction`, scaled. The two are kept apart
  * because their sum, far from the coordinates' origin, would be rounded to the spacing of numbers there. */
 typedef struct TcLine {
-  double eye[3], offset[3], direction[3];
-  double begin, end; /* the part of the ray that counts, as distances from eye + offset, scaled */
+  double eye[3];
+  double begin; /* the part of the ray that counts, as distances from eye + offset, scaled */
+  double direction[3];
+  double end;
+  double offset[3];
+  double unused; /* so that kernels may read a ray as three times four numbers */
 } TcLine;
 
 /* Points' coordinates of magnitude below TC_TINY are zero. Then every x and y is a multiple of 2^−406, their products
