@@ -386,6 +386,31 @@ static void same_bits_by_any_threads(void **state) {
 }
 
 /* Rows of one array, in single precision, and without begins and ends. */
+/* How vertices are read depends on how many rays there are: lengths are the same to the bit, and what is seen is up to
+ * the order of sums. */
+static void each_ray_as_by_itself(void **state) {
+  (void)state;
+  World world;
+  world_begin(&world, 14, 0.4, 1, TETCAST_TRAVERSAL_SHELL);
+  set_values(&world, world.cube.values, TETCAST_POINT);
+  set_transfer(&world, gray_of(world.fixture.context, 0.3));
+  enum { MANY = 2000 };
+  Lines lines = random_lines(MANY, 1, 79);
+  static double length[MANY], color[MANY][4], depth[MANY];
+  cast(world.scene, &lines, &(TetcastCastResult){.color = color[0], .optical_depth = depth, .length = length});
+  for (int64_t i = 0; i < MANY; ++i) {
+    const Lines line = {1, &lines.origin[i], &lines.direction[i], &lines.begin[i], &lines.end[i]};
+    double own_length, own_color[4], own_depth;
+    cast(world.scene, &line,
+         &(TetcastCastResult){.color = own_color, .optical_depth = &own_depth, .length = &own_length});
+    assert_true(own_length == length[i]);
+    expect_near(own_color, color[i], 4, 1e-15, "a ray by itself");
+    expect_near(&own_depth, &depth[i], 1, 1e-14, "the depth of a ray by itself");
+  }
+  lines_destroy(&lines);
+  world_end(&world);
+}
+
 static void strides_and_types(void **state) {
   (void)state;
   World world;
@@ -519,17 +544,12 @@ static void progress_may_cancel(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rays_of_a_frame),
-      cmocka_unit_test(two_dimensions),
-      cmocka_unit_test(groups_of_a_frame),
-      cmocka_unit_test(linear_fields),
-      cmocka_unit_test(parts_add_up),
-      cmocka_unit_test(bounds_hold),
-      cmocka_unit_test(values_of_blend_modes),
-      cmocka_unit_test(same_bits_by_any_threads),
-      cmocka_unit_test(strides_and_types),
-      cmocka_unit_test(what_is_refused),
-      cmocka_unit_test(no_rays),
+      cmocka_unit_test(rays_of_a_frame),       cmocka_unit_test(two_dimensions),
+      cmocka_unit_test(groups_of_a_frame),     cmocka_unit_test(linear_fields),
+      cmocka_unit_test(parts_add_up),          cmocka_unit_test(bounds_hold),
+      cmocka_unit_test(values_of_blend_modes), cmocka_unit_test(same_bits_by_any_threads),
+      cmocka_unit_test(each_ray_as_by_itself), cmocka_unit_test(strides_and_types),
+      cmocka_unit_test(what_is_refused),       cmocka_unit_test(no_rays),
       cmocka_unit_test(progress_may_cancel),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -262,6 +262,34 @@ static void from_far_away(void **state) {
   world_end(&world);
 }
 
+/* ── many rays and few ── */
+
+/* How vertices are read depends on how many rays there are, and each lane's list of crossings grows with them: none of
+ * that shows in any bit. */
+static void each_ray_as_by_itself(void **state) {
+  (void)state;
+  for (int traversal = 0; traversal < 2; ++traversal) {
+    World world;
+    world_begin(&world, traversal == TETCAST_TRAVERSAL_SHELL ? 14 : 5, 0.4, 1, (TetcastTraversal)traversal);
+    Lines lines = random_lines(4 * RAYS, 1, 71);
+    for (int64_t i = 0; i < lines.count; i += 3)
+      lines.end[i] = lines.begin[i] + 4;
+    All *all = trace_all(world.volume, &lines);
+    for (int64_t i = 0; i < lines.count; ++i) {
+      const Lines line = {1, &lines.origin[i], &lines.direction[i], &lines.begin[i], &lines.end[i]};
+      All *one = trace_all(world.volume, &line);
+      assert_int_equal(one->count, all->offsets[i + 1] - all->offsets[i]);
+      if (one->count > 0)
+        assert_memory_equal(one->crossings, all->crossings + all->offsets[i],
+                            (size_t)one->count * sizeof *one->crossings);
+      all_destroy(one);
+    }
+    all_destroy(all);
+    lines_destroy(&lines);
+    world_end(&world);
+  }
+}
+
 /* ── threads, what is refused ── */
 
 static void same_bits_by_any_threads(void **state) {
@@ -335,6 +363,7 @@ int main(void) {
       cmocka_unit_test(along_vertices_edges_and_faces),
       cmocka_unit_test(torn_cells),
       cmocka_unit_test(from_far_away),
+      cmocka_unit_test(each_ray_as_by_itself),
       cmocka_unit_test(same_bits_by_any_threads),
       cmocka_unit_test(what_is_refused),
   };
