@@ -310,18 +310,32 @@ void tc_embree_query(const TcEmbree *embree, const double from_center[3], const 
     }                                                                                                                  \
   } while (0)
 
+/* Whether lines go nearly the same way, so that it pays to look at boxes for all of them at once. */
+static bool coherent(int width, unsigned lanes, const double *direction) {
+  const int first = lanes ? __builtin_ctz(lanes) : 0;
+  for (; lanes; lanes &= lanes - 1) {
+    const int i = __builtin_ctz(lanes);
+    for (int k = 0; k < 3; ++k) {
+      if (fabs(direction[k * width + i] - direction[k * width + first]) > 0.125)
+        return false;
+    }
+  }
+  return true;
+}
+
 /* Where the processor has no such packets, Embree takes them apart. */
 void tc_embree_query_packet(const TcEmbree *embree, int width, unsigned lanes, const double *from_center,
                             const double *direction, TcPacketCandidateFunction *candidate, void *user) {
   Query query = {.packet_candidate = candidate, .query = user};
   _Alignas(64) int valid[16];
+  const bool together = coherent(width, lanes, direction);
   if (width == 16) {
     struct RTCRayHit16 rays;
     FILL(rays);
-    INTERSECT(query, true, rtcIntersect16(valid, embree->scene, RAYS(query, &rays)));
+    INTERSECT(query, together, rtcIntersect16(valid, embree->scene, RAYS(query, &rays)));
   } else {
     struct RTCRayHit8 rays;
     FILL(rays);
-    INTERSECT(query, true, rtcIntersect8(valid, embree->scene, RAYS(query, &rays)));
+    INTERSECT(query, together, rtcIntersect8(valid, embree->scene, RAYS(query, &rays)));
   }
 }
