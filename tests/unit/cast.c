@@ -385,7 +385,6 @@ static void same_bits_by_any_threads(void **state) {
   world_end(&world);
 }
 
-/* Rows of one array, in single precision, and without begins and ends. */
 /* How vertices are read depends on how many rays there are: lengths are the same to the bit, and what is seen is up to
  * the order of sums. */
 static void each_ray_as_by_itself(void **state) {
@@ -393,7 +392,7 @@ static void each_ray_as_by_itself(void **state) {
   World world;
   world_begin(&world, 14, 0.4, 1, TETCAST_TRAVERSAL_SHELL);
   set_values(&world, world.cube.values, TETCAST_POINT);
-  set_transfer(&world, gray_of(world.fixture.context, 0.3));
+  set_transfer(&world, transfer_of(world.fixture.context, 1));
   enum { MANY = 2000 };
   Lines lines = random_lines(MANY, 1, 79);
   static double length[MANY], color[MANY][4], depth[MANY];
@@ -411,6 +410,7 @@ static void each_ray_as_by_itself(void **state) {
   world_end(&world);
 }
 
+/* Rows of one array, in single precision, and without begins and ends. */
 static void strides_and_types(void **state) {
   (void)state;
   World world;
