@@ -14,6 +14,8 @@ enum {
   AGAIN = TC_SINGLE ? 2 * TC_TILE * TC_TILE : 1
 };
 
+_Static_assert(TC_TRAIL_LISTS / TC_LANES >= PACKETS, "each lane has a list of its own");
+
 #define EACH_PACKET TC_UNROLLED for (int i = 0; i < PACKETS; ++i)
 
 typedef struct Packet {
