@@ -308,15 +308,8 @@ TC_INLINE void tc_groups_dim(const unsigned on, const TcAbsorption *absorption, 
     beam->depth_error += absorption->spread;
 }
 
-#if TC_LANES == 1 /* where a call costs a tenth of a frame */
-#define TC_SHARED TC_INLINE
-#else
-#define TC_SHARED TC_NOINLINE
-#endif
-
-/* Integrates all groups one after the other. An extinction that several groups in turn have is evaluated once. It is
- * large, and there once for frames and fragments. */
-TC_SHARED void tc_groups_by_group(const unsigned on, const TcCoefficients *c, TcGroups *groups,
+/* Integrates all groups one after the other. An extinction that several groups in turn have is evaluated once. */
+TC_INLINE void tc_groups_by_group(const unsigned on, const TcCoefficients *c, TcGroups *groups,
                                   const TcStretch *stretch) {
   TcAbsorption absorption;
   for (int g = 0; g < c->groups; ++g) {
@@ -335,6 +328,12 @@ TC_SHARED void tc_groups_by_group(const unsigned on, const TcCoefficients *c, Tc
         tc_groups_scaled(on, tc_groups_ends(on, groups, emission * TC_LANES, false, stretch), c->emission_scale);
     tc_groups_emit(on, &ends, &absorption, stretch, &groups->beam[g]);
   }
+}
+
+/* The same in a function of its own: it is large, and fragments, which cost more than frames anyway, share it. */
+TC_NOINLINE void tc_groups_by_group_apart(const unsigned on, const TcCoefficients *c, TcGroups *groups,
+                                          const TcStretch *stretch) {
+  tc_groups_by_group(on, c, groups, stretch);
 }
 
 /* Integrates all groups of ray `l`, TC_LANES groups at a time. Beyond the last group, lanes have values of whatever
@@ -399,9 +398,12 @@ TC_INLINE void tc_groups_segment(const unsigned on, const TcGatherJob *job, TcGr
   all.partial = passage->partial;
   all.spread_own = on & TC_BOUND ? passage->length * job->rounding : tc_set(0);
   all.spread_range = on & TC_BOUND ? passage->spread : tc_set(0);
-  if (groups->by_rays) {
+  if (groups->by_rays || on & TC_PARTS) {
     const TcStretch stored = all; /* what is called takes it from memory, what is inlined from registers */
-    tc_groups_ray_by_ray(on, c, groups, mask, &stored);
+    if (groups->by_rays)
+      tc_groups_ray_by_ray(on, c, groups, mask, &stored);
+    else
+      tc_groups_by_group_apart(on, c, groups, &stored);
   } else {
     tc_groups_by_group(on, c, groups, &all);
   }

@@ -335,7 +335,10 @@ static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *de
   TcScreen setup;
   const int64_t rays = job->width * job->height * desc->samples;
   const bool worth = tc_worth_preparing(job->shell, rays);
-  const bool on_screen = worth && tc_screen_setup(scene->volume, &job->view, job->width, job->height, &setup);
+  /* Parts of a larger mesh must not differ in it: rays that pass from one to another would pass edges on different
+   * sides. */
+  const bool wanted = worth || scene->volume->is_part;
+  const bool on_screen = wanted && tc_screen_setup(scene->volume, &job->view, job->width, job->height, &setup);
   double away2 = 0;
   for (int k = 0; k < 3; ++k)
     away2 += (scene->volume->center[k] - job->view.eye[k]) * (scene->volume->center[k] - job->view.eye[k]);

@@ -8,8 +8,6 @@ bool tc_worth_preparing(const TcShell *shell, int64_t rays) {
   const TetcastVolume *volume = shell->volume;
   if (volume->traversal != TETCAST_TRAVERSAL_SHELL)
     return false;
-  if (volume->is_part)
-    return true;
   const double cells = (double)volume->cell_count, crossings = 0.5 * (double)rays * cbrt(cells);
   const double share = shell->visible ? (double)shell->visible_cells / cells : 1;
   return share * crossings > 3 * (double)volume->vertex_count;

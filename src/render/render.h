@@ -130,8 +130,7 @@ TetcastStatus tc_scene_prepare(const TetcastScene *scene);
 /* Whether preparing all vertices once, by projecting them or as tc_points_prepare() does, is faster than making of them
  * what rays need wherever one meets them. Projecting one vertex takes about as long as a dozen steps of a ray become
  * faster by it, so it doesn't pay for small pictures of large meshes, nor where little of the mesh is seen. The number
- * of steps is estimated as if the mesh were a cube, of which each ray crosses half as many cells as ∛cell_count. Parts
- * of a larger mesh must not differ in it, as rays that pass from one to another would pass edges on different sides. */
+ * of steps is estimated as if the mesh were a cube, of which each ray crosses half as many cells as ∛cell_count. */
 bool tc_worth_preparing(const TcShell *shell, int64_t rays);
 /* Puts vertices next to their scalars, as rays in ray space read them fastest (TcJob.points), in memory for as many
  * times four doubles or, if that is NULL, in new memory, which the caller frees. NULL: there is none. What rays gather
