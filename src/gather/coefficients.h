@@ -378,8 +378,10 @@ TC_NOINLINE void tc_groups_ray_by_ray(const unsigned on, const TcCoefficients *c
   }
 }
 
-TC_INLINE void tc_groups_segment(const unsigned on, const TcGatherJob *job, TcGroups *groups, TcMask mask,
+TC_INLINE void tc_groups_segment(const unsigned features, const TcGatherJob *job, TcGroups *groups, TcMask mask,
                                  const TcPassage *passage) {
+  /* TC_PARTS matters to the walk alone: what is called is the same with it and without. */
+  const unsigned on = features & ~(unsigned)TC_PARTS;
   const TcCoefficients *c = job->coefficients;
   if (c->points && groups->by_rays) {
     tc_groups_at_rays(on, c->points, groups, passage->crossed, passage->walk, groups->far);
@@ -398,7 +400,7 @@ TC_INLINE void tc_groups_segment(const unsigned on, const TcGatherJob *job, TcGr
   all.partial = passage->partial;
   all.spread_own = on & TC_BOUND ? passage->length * job->rounding : tc_set(0);
   all.spread_range = on & TC_BOUND ? passage->spread : tc_set(0);
-  if (groups->by_rays || on & TC_PARTS) {
+  if (groups->by_rays || features & TC_PARTS) {
     const TcStretch stored = all; /* what is called takes it from memory, what is inlined from registers */
     if (groups->by_rays)
       tc_groups_ray_by_ray(on, c, groups, mask, &stored);

@@ -58,11 +58,10 @@ TC_INLINE void tc_visit_groups_enter(const unsigned on, const TcGatherJob *job, 
   tc_groups_enter(on & ~(unsigned)TC_PARTS, job, &visit->groups, mask, walk);
 }
 
-/* Without TC_PARTS, which matters to the walk alone, what is compiled for frames serves here as well. */
 TC_INLINE void tc_visit_groups_segment(const unsigned on, const TcGatherJob *job, TcVisitGroups *visit, TcMask mask,
                                        const TcPassage *passage) {
   visit->end = tc_select(mask, passage->end, visit->end);
-  tc_groups_segment(on & ~(unsigned)TC_PARTS, job, &visit->groups, mask, passage);
+  tc_groups_segment(on, job, &visit->groups, mask, passage);
 }
 
 TC_INLINE TcMask tc_visit_groups_complete(const unsigned on, const TcGatherJob *job, TcVisitGroups *visit,

@@ -523,23 +523,7 @@ static void memory_may_end_anywhere(void **state) {
   const TetcastCamera camera = camera_of(2, 2, 3, 0.5, 0.5, 0.5);
   set_world(&world, &groups);
   TetcastFrame *frame = frame_of(world.fixture.context, group_channels, 5);
-  TetcastStatus status = TETCAST_ERROR_MEMORY;
-  for (long n = 1; status; ++n) {
-    TetcastFragments *fragments = NULL;
-    const long live = world.fixture.live;
-    world.fixture.fail_at = world.fixture.allocations + n;
-    status = tetcast_fragments_create(world.fixture.context, &fragments);
-    if (!status)
-      status = tetcast_scene_render_fragments(world.scene, &camera, NULL, WIDTH, HEIGHT, fragments, NULL);
-    if (!status) {
-      const TetcastFragmentList list = tetcast_fragments_list(fragments);
-      status = tetcast_fragments_composite(world.fixture.context, &list, 1, frame, NULL);
-    }
-    assert_true(status == TETCAST_OK || status == TETCAST_ERROR_MEMORY);
-    tetcast_fragments_destroy(&fragments);
-    assert_true(world.fixture.live >= live && world.fixture.live < live + 20); /* what the scene keeps */
-  }
-  world.fixture.fail_at = 0;
+  run_out_of_memory(&world, &camera, WIDTH, HEIGHT, frame);
   tetcast_frame_destroy(&frame);
   world_end(&world);
 }

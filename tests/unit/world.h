@@ -93,4 +93,26 @@ static inline TetcastCamera parallel(double x, double y, double z, double height
                          .height = height};
 }
 
+/* Lets each allocation in turn fail while fragments are made and composited: that is told, and nothing is lost. */
+static inline void run_out_of_memory(World *world, const TetcastCamera *camera, int width, int height,
+                                     TetcastFrame *frame) {
+  TetcastStatus status = TETCAST_ERROR_MEMORY;
+  for (long n = 1; status; ++n) {
+    TetcastFragments *fragments = NULL;
+    const long live = world->fixture.live;
+    world->fixture.fail_at = world->fixture.allocations + n;
+    status = tetcast_fragments_create(world->fixture.context, &fragments);
+    if (!status)
+      status = tetcast_scene_render_fragments(world->scene, camera, NULL, width, height, fragments, NULL);
+    if (!status) {
+      const TetcastFragmentList list = tetcast_fragments_list(fragments);
+      status = tetcast_fragments_composite(world->fixture.context, &list, 1, frame, NULL);
+    }
+    assert_true(status == TETCAST_OK || status == TETCAST_ERROR_MEMORY);
+    tetcast_fragments_destroy(&fragments);
+    assert_true(world->fixture.live >= live && world->fixture.live < live + 20); /* what the scene keeps */
+  }
+  world->fixture.fail_at = 0;
+}
+
 #endif
