@@ -83,6 +83,9 @@ static const char *find_mixture(const RenderOptions *options) {
   }
   if (options->logarithmic && render_options_range(options) == RANGE_FIXED && !(options->range[0] > 0))
     return "--log: --range must be above 0, where values have a logarithm";
+  if ((options->logarithmic || render_options_given(options, OPTION_CENTRE)) &&
+      render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
+    return "--log, --centre: with --blend, colours are even in the values from one end of --range to the other";
   const char *light = find_darkness(options);
   if (light)
     return light;

@@ -283,15 +283,20 @@ static TetcastStatus create_volume(Stage *stage, const RenderOptions *options) {
   return status;
 }
 
+/* Whether the preset, a file's, states opacities, and not just colours. */
+static bool states_opacities(const Stage *stage) {
+  int64_t knots = 2;
+  if (stage->preset)
+    tetcast_transfer_function_extinction(stage->preset, &knots);
+  return knots > 2;
+}
+
 /* Whether the transfer function is found from the distribution of values. */
 static bool is_designed(const Stage *stage, const RenderOptions *options) {
-  int64_t knots = 2;
   if (render_options_direct(options) ||
       (!stage->whole && stage->range[0] == stage->range[1])) /* there is nothing to tell apart */
     return false;
-  if (stage->preset) /* a file's may state opacities, or just colours */
-    tetcast_transfer_function_extinction(stage->preset, &knots);
-  if (stage->transfer_function || stage->uniform || knots > 2 ||
+  if (stage->transfer_function || stage->uniform || states_opacities(stage) ||
       render_options_blend(options) != TETCAST_BLEND_COMPOSITE)
     return false;
   const RangeKind kind = render_options_range(options);
@@ -494,6 +499,11 @@ int stage_complete(Stage *stage, const RenderOptions *options) {
   if (!render_options_direct(options) && options->logarithmic && render_options_range(options) != RANGE_FIXED &&
       !check_logarithm(stage))
     return CLI_FAILED;
+  if (states_opacities(stage) && (options->logarithmic || render_options_given(options, OPTION_CENTRE))) {
+    cli_error("--preset %s: states opacities at places of its own, which neither --log nor --centre moves",
+              options->preset);
+    return CLI_FAILED;
+  }
   const bool designed = is_designed(stage, options);
   stage->designed = designed || (stage->designed && stage->transfer_function); /* which an earlier step has left */
   const StageOthers *others = stage->others;

@@ -83,6 +83,8 @@ refuse 2 '--range LO,HI or --range step' render t_0.vtu t_1.vtu -o b.##.png --ar
 refuse 2 'expected composite, maximum, minimum, average or additive' render cube.vtu --blend mip
 refuse 2 'there is only exact' render cube.vtu --blend maximum --integrator midpoint:2
 refuse 2 'only value and cells are possible' render cube.vtu -o a.exr --blend maximum --channels error
+refuse 2 'colours are even in the values' render cube.vtu --blend maximum --log
+refuse 2 'colours are even in the values' render cube.vtu --blend additive --centre 0
 refuse 2 'needs --blend' render cube.vtu -o a.exr --channels value
 refuse 2 'only .exr and .tif' render cube.vtu -o a.png --blend maximum --channels value
 refuse 2 'exclude each other' render cube.vtu --blend maximum --extinction s

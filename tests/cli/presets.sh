@@ -98,6 +98,8 @@ shown ramp maps.json:ramp
 same ramp.png shadow.png 'a ramp of opacity'
 shown half maps.XML:half
 same half.png shadow.png
+refuse 1 "states opacities at places of its own" render cube.vtu --array s --preset maps.json:peak --log -o no.png
+refuse 1 "states opacities at places of its own" render cube.vtu --array s --preset maps.json:peak --centre 1 -o no.png
 shown peak maps.json:peak --range 0,4
 contains ' \[\[0.0,0.0\],\[2.0,[0-9.]*\],.*\[3.5,[0-9.]*\],\[3.5,0.0\],\[4.0,0.0\]\]$'
 differ peak.png shadow.png
