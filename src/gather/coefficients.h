@@ -141,8 +141,8 @@ TC_INLINE TcMask tc_groups_differ(TcWord a, TcWord b) {
   return tc_high_bit(bits | (0 - bits)); /* one of a number that isn't 0 and its negative is negative */
 }
 
-/* Holds the values at the vertices of the faces where rays are, with a ray in each lane; lanes without a ray have
- * vertices, too. */
+/* Looks up the values at all three vertices of the faces where rays are, and holds them, with a ray in each lane; lanes
+ * without a ray have vertices, too. */
 TC_NOINLINE void tc_groups_hold_all(const TcRows *rows, TcGroups *groups, const TcPacket *walk) {
   for (int k = 0; k < 3; ++k) {
     groups->id[k] = walk->v[k].id;
@@ -330,7 +330,7 @@ TC_INLINE void tc_groups_by_group(const unsigned on, const TcCoefficients *c, Tc
   }
 }
 
-/* The same in a function of its own: it is large, and fragments, which cost more than frames anyway, share it. */
+/* The same in a function of its own, for fragments: it is large, and the call costs them less than it costs frames. */
 TC_NOINLINE void tc_groups_by_group_apart(const unsigned on, const TcCoefficients *c, TcGroups *groups,
                                           const TcStretch *stretch) {
   tc_groups_by_group(on, c, groups, stretch);

@@ -10,22 +10,14 @@ enum { WIDTH = 150, HEIGHT = 61, PIXELS = WIDTH * HEIGHT };
 static const Groups kinds[] = {{1, 1, 0, 3}, {3, 3, 2, 0.5}, {19, 19, 0, 4}, {1, 10, 1, 6}, {0, 2, 0, 2}};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
+static Part part_with_groups(TetcastContext *context, const Cube *cube, const int *owner, int which, const void *of,
+                             uint64_t *seed) {
+  return group_part(context, cube, owner, which, of, seed);
+}
+
 static Pieces group_pieces(TetcastContext *context, const Cube *cube, Split split, int count, const Groups *groups,
                            Deal deal, int rank, int ranks) {
-  Pieces pieces = {.count = 0};
-  int *owner = split_cells(cube, split, count);
-  for (int i = 0; i < count; ++i) {
-    uint64_t seed = 17 + (uint64_t)i;
-    if (!has_piece(i, count, deal, rank, ranks))
-      continue;
-    const Part part = group_part(context, cube, owner, i, groups, &seed);
-    if (!part.scene)
-      continue;
-    pieces.part[pieces.count] = part;
-    pieces.scenes[pieces.count++] = part.scene;
-  }
-  free(owner);
-  return pieces;
+  return pieces_made(context, cube, split, count, deal, rank, ranks, part_with_groups, groups);
 }
 
 static TetcastFrame *frame_of(TetcastContext *context, TetcastType type, uint32_t channels, int groups) {

@@ -88,16 +88,20 @@ static inline bool has_piece(int piece, int pieces, Deal deal, int rank, int ran
   return rank == (deal == DEAL_IN_TURN ? piece % ranks : deal == DEAL_LAST ? ranks - 1 : piece % ((ranks + 1) / 2));
 }
 
-/* The pieces of this rank; those without cells are left out. */
-static inline Pieces pieces_of(TetcastContext *context, const Cube *cube, Split split, int count, Deal deal, int rank,
-                               int ranks) {
+/* Makes a piece, or none if it has no cells. */
+typedef Part PieceMaker(TetcastContext *context, const Cube *cube, const int *owner, int which, const void *of,
+                        uint64_t *seed);
+
+/* The pieces of this rank, each made by `make` of `of`; those without cells are left out. */
+static inline Pieces pieces_made(TetcastContext *context, const Cube *cube, Split split, int count, Deal deal, int rank,
+                                 int ranks, PieceMaker *make, const void *of) {
   Pieces pieces = {.count = 0};
   int *owner = split_cells(cube, split, count);
   for (int i = 0; i < count; ++i) {
     uint64_t seed = 17 + (uint64_t)i;
     if (!has_piece(i, count, deal, rank, ranks))
       continue;
-    const Part part = part_of(context, cube, owner, i, &seed);
+    const Part part = make(context, cube, owner, i, of, &seed);
     if (!part.scene)
       continue;
     pieces.part[pieces.count] = part;
@@ -105,6 +109,17 @@ static inline Pieces pieces_of(TetcastContext *context, const Cube *cube, Split 
   }
   free(owner);
   return pieces;
+}
+
+static inline Part plain_part(TetcastContext *context, const Cube *cube, const int *owner, int which, const void *of,
+                              uint64_t *seed) {
+  (void)of;
+  return part_of(context, cube, owner, which, seed);
+}
+
+static inline Pieces pieces_of(TetcastContext *context, const Cube *cube, Split split, int count, Deal deal, int rank,
+                               int ranks) {
+  return pieces_made(context, cube, split, count, deal, rank, ranks, plain_part, NULL);
 }
 
 static inline void pieces_set_transfer(Pieces *pieces, const TetcastTransferFunction *transfer) {
