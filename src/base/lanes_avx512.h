@@ -209,6 +209,16 @@ TC_INLINE TcVec tc_lookup(const TcReal table[TC_LANES], TcInt at) {
 #endif
 }
 
+/* The lanes of m one after the other from the first lane on, and the inverse: the first lanes of v in place of the
+ * lanes of m of `others`. */
+#define TC_HAVE_COMPRESS 1
+TC_INLINE TcVec tc_compress(TcMask m, TcVec v) {
+  return (TcVec)TC_PS(maskz_compress, m, TC_R(v));
+}
+TC_INLINE TcVec tc_expand(TcMask m, TcVec v, TcVec others) {
+  return (TcVec)TC_PS(mask_expand, TC_R(others), m, TC_R(v));
+}
+
 #if !TC_SINGLE
 /* The inverse of loading records: the lanes' four numbers go to each lane's address. */
 TC_INLINE void tc_store_records(TcReal *const at[TC_LANES], const TcVec component[4]) {

@@ -52,10 +52,12 @@ TC_INLINE void tc_emission_begin(const TcGatherJob *job, TcEmission *e) {
     e->transmittance[l] = 1;
 }
 
-/* Adds the block under way to the finished ones and begins another. */
-TC_NOINLINE void tc_emission_end_block(const unsigned on, TcEmission *e) {
+/* Adds the block under way to the finished ones and begins another, unless it was the last. In single precision, the
+ * transmittance of all blocks before is e to a rounded depth d, which is off by at most d + 3 units of 2⁻²⁴; as e^−d d
+ * < 1 − e^−d, that adds up to no more than 4 of the units of tc_tolerance_single(). */
+TC_NOINLINE void tc_emission_end_block(const unsigned on, TcEmission *e, bool last) {
 #if TC_SINGLE
-  TcReal color[3][TC_LANES], depth[TC_LANES];
+  TcReal color[3][TC_LANES], depth[TC_LANES], before[TC_LANES];
   for (int k = 0; k < 3; ++k)
     tc_store(color[k], e->block_color[k]);
   tc_store(depth, e->block_depth);
@@ -63,9 +65,15 @@ TC_NOINLINE void tc_emission_end_block(const unsigned on, TcEmission *e) {
     for (int k = 0; k < 3; ++k)
       e->color[k][l] += e->transmittance[l] * (double)color[k][l];
     e->depth[l] += (double)depth[l];
-    TC_AT(e->before, l) = (TcReal)e->depth[l];
-    if (on & TC_COLORED)
-      e->transmittance[l] = exp(-e->depth[l]);
+    before[l] = (TcReal)e->depth[l];
+  }
+  e->before = tc_load(before);
+  if (last)
+    return;
+  if (on & TC_COLORED) {
+    tc_store(depth, tc_exp(-e->before));
+    for (int l = 0; l < TC_LANES; ++l)
+      e->transmittance[l] = (double)depth[l];
   }
 #else
   e->before += e->block_depth;
@@ -74,6 +82,10 @@ TC_NOINLINE void tc_emission_end_block(const unsigned on, TcEmission *e) {
     const TcVec transmittance = tc_load(e->transmittance);
     for (int k = 0; k < 3; ++k)
       tc_store(e->color[k], tc_madd(transmittance, e->block_color[k], tc_load(e->color[k])));
+  }
+  if (last)
+    return;
+  if (on & TC_COLORED) {
     const TcVec through = tc_exp(-e->before);
     tc_store(e->transmittance, on & TC_SURFACES ? through * e->layers.veil : through);
   }
@@ -186,7 +198,7 @@ TC_NOINLINE void tc_emission_parts(const unsigned on, const TcGatherJob *job, Tc
       tc_emission_move(e, mask, part, done, to, *spread * fraction);
     if (tc_any(tc_and(mask, piece->filled))) {
       if (++e->block_parts == 64)
-        tc_emission_end_block(on, e);
+        tc_emission_end_block(on, e, false);
       TcLitEnds part_lit, *between = NULL;
       if (on & TC_LIT) {
         between = &part_lit;
@@ -441,7 +453,7 @@ TC_INLINE void tc_emission_enter(const unsigned on, const TcGatherJob *job, TcEm
 TC_INLINE TcMask tc_emission_complete(const unsigned on, const TcGatherJob *job, TcEmission *e, TcMask active,
                                       int64_t steps) {
   if (TC_UNLIKELY(steps % 64 == 0))
-    tc_emission_end_block(on, e);
+    tc_emission_end_block(on, e, false);
   const TcVec depth = e->before + e->block_depth;
   const TcReal opaque = (TcReal)job->tolerance.opaque, nearly = (TcReal)TC_NEARLY_OPAQUE;
   TcMask near = tc_and(active, tc_gt(depth, tc_set(opaque < nearly ? opaque : nearly)));
@@ -470,15 +482,13 @@ TC_INLINE TcMask tc_emission_complete(const unsigned on, const TcGatherJob *job,
 /* The sums are red, green, blue, alpha; if they are wanted, the depth and whether there is one, and its normal. */
 TC_INLINE void tc_emission_end(const unsigned on, const TcGatherJob *job, TcEmission *e, const TcEnding *ending,
                                double (*sums)[TC_LANES]) {
-  tc_emission_end_block(on, e);
-#if TC_SINGLE
-  TC_EACH_LANE sums[3][l] = -expm1(-e->depth[l]);
-#else
-  TcVec alpha = tc_segments_opacity(e->before);
+  tc_emission_end_block(on, e, true);
+  TcVec opacity = tc_segments_opacity(e->before);
   if (on & TC_SURFACES)
-    alpha = tc_madd(alpha, e->layers.veil, 1 - e->layers.veil);
-  tc_store(sums[3], alpha);
-#endif
+    opacity = tc_madd(opacity, e->layers.veil, 1 - e->layers.veil);
+  TcReal alpha[TC_LANES];
+  tc_store(alpha, opacity);
+  TC_EACH_LANE sums[3][l] = (double)alpha[l];
   for (int k = 0; k < 3; ++k) {
     if (on & TC_COLORED)
       memcpy(sums[k], e->color[k], sizeof e->color[k]);

@@ -113,6 +113,28 @@ TC_INLINE TcSegments tc_segments_thick(TcVec a, TcVec a1) {
   return (TcSegments){1 - e, 1 - psi, psi - e};
 }
 
+#if TC_HAVE_COMPRESS
+/* The same for half of the lanes at most, those of `thick`: their near ends and their far ends share vectors. Others
+ * are left as they are. */
+TC_INLINE void tc_segments_few_thick(TcMask thick, TcVec a, TcVec a1, TcSegments *segments) {
+  const TcVec most = tc_set((TcReal)(TC_SINGLE ? 1e37 : 1e300)), zero = tc_set(0);
+  const int count = __builtin_popcount(tc_bits(thick));
+  const TcMask far = tc_mask_of(((1U << count) - 1) << count), ends = tc_mask_of((1U << 2 * count) - 1);
+  a = tc_compress(thick, tc_min(a, most));
+  a1 = tc_compress(thick, tc_min(a1, most));
+  const TcVec change = a1 - a, b = tc_expand(far, change, change), end = tc_select(ends, tc_expand(far, a1, a), tc_set(1));
+  const TcMask rises = tc_le(zero, b);
+  const TcVec first = tc_select(rises, zero, tc_set(TC_MILLS_ROWS)),
+              rows = tc_select(rises, tc_set(TC_MILLS_ROWS), tc_set(TC_DAWSON_ROWS));
+  const TcVec r = tc_sqrt(tc_select(rises, b, -8 * b)), inverse = 1 / (r + end);
+  const TcVec e = tc_exp((TcReal)-0.5 * a - (TcReal)0.5 * a1), at_end = tc_special(first, rows, r * inverse) * inverse;
+  const TcVec psi = at_end - e * tc_compress(far, at_end);
+  segments->alpha = tc_expand(thick, 1 - e, segments->alpha);
+  segments->w0 = tc_expand(thick, 1 - psi, segments->w0);
+  segments->w1 = tc_expand(thick, psi - e, segments->w1);
+}
+#endif
+
 /* tc_segments() where a depth is above ¼ (single precision: ½). */
 TC_NOINLINE void tc_segments_deep(TcMask mask, const TcVec *near, const TcVec *far, TcSegments *result) {
   const TcVec a = *near, a1 = *far, t = (TcReal)0.5 * a + (TcReal)0.5 * a1, one = tc_set(1);
@@ -120,6 +142,14 @@ TC_NOINLINE void tc_segments_deep(TcMask mask, const TcVec *near, const TcVec *f
   TcSegments segments = {tc_set(0), tc_set(0), tc_set(0)};
   if (tc_any(others))
     segments = tc_segments_half(t, (TcReal)0.5 * a1 - (TcReal)0.5 * a);
+#if TC_HAVE_COMPRESS
+  if (2 * __builtin_popcount(tc_bits(thick)) <= TC_LANES) {
+    if (tc_any(thick))
+      tc_segments_few_thick(thick, a, a1, &segments);
+    *result = segments;
+    return;
+  }
+#endif
   if (tc_any(thick)) {
     const TcSegments deep = tc_segments_thick(tc_select(thick, a, one), tc_select(thick, a1, one));
     segments.alpha = tc_select(thick, deep.alpha, segments.alpha);

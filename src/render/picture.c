@@ -200,6 +200,28 @@ static bool count_cells(const TcRender *render, int64_t x0, int64_t y0, int64_t 
   return ok;
 }
 
+/* Writes a tile whose sums are pixels, and after each, if it is bounded, a bound on its error. */
+static void store_plain(const TcRender *render, int64_t x0, int64_t y0, int64_t x1, int64_t y1, TcWorking *working) {
+  enum { PIXEL = 4 * sizeof(double) };
+  const TetcastFrame *frame = render->frame;
+  const double *sums = working->sums;
+  double error = working->error;
+  for (int64_t y = y0; y < y1; ++y) {
+    char *row = (char *)frame->pixels + (y - render->first_row) * frame->row_stride + x0 * PIXEL;
+    if (!render->bounded) {
+      memcpy(row, sums, (size_t)(x1 - x0) * PIXEL);
+      sums += 4 * (x1 - x0);
+      continue;
+    }
+    for (int64_t x = x0; x < x1; ++x, sums += 5, row += PIXEL) {
+      memcpy(row, sums, PIXEL);
+      if (!(sums[4] <= error))
+        error = sums[4];
+    }
+  }
+  working->error = error;
+}
+
 static bool render_tile(const TcRender *render, int64_t tile_x, int64_t tile_y, TcWorking *working) {
   const TcJob *job = &render->job;
   const int64_t first = render->first_row, end = first + render->frame->height;
@@ -217,11 +239,7 @@ static bool render_tile(const TcRender *render, int64_t tile_x, int64_t tile_y, 
   for (int64_t i = 0; samples > 1 && i < numbers; ++i)
     working->sums[i] /= samples;
   if (render->plain) {
-    const int64_t row = (x1 - x0) * 4 * (int64_t)sizeof(double);
-    for (int64_t y = y0; y < y1; ++y) {
-      memcpy((char *)render->frame->pixels + (y - first) * render->frame->row_stride + x0 * 4 * (int64_t)sizeof(double),
-             (char *)working->sums + (y - y0) * row, (size_t)row);
-    }
+    store_plain(render, x0, y0, x1, y1, working);
     return true;
   }
   TcGathered gathered = tc_render_gathered(render);
@@ -513,7 +531,8 @@ TetcastStatus tc_render(const TetcastScene *scene, const TetcastCamera *camera, 
   const bool one_by_one = job->one_lane || scene->volume->traversal == TETCAST_TRAVERSAL_FACES;
   render.bounded = measured;
   render.counted = tc_frame_channel(frame, TETCAST_CHANNEL_CELLS) != NULL;
-  render.plain = job->pieces && !depth && !render.counted && frame->type == TETCAST_TYPE_FLOAT64 && !measured;
+  render.plain = job->pieces && !depth && !render.counted && frame->type == TETCAST_TYPE_FLOAT64 &&
+                 !tc_frame_channel(frame, TETCAST_CHANNEL_ERROR);
   render.kernels = tc_kernels_for(one_by_one ? TETCAST_ISA_SCALAR : desc->isa);
   status = plan(scene, desc, measured, &render); /* this may change to kernels in single precision */
   TetcastRenderStats sum = {.rays = frame->width * frame->height * desc->samples,

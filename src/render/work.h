@@ -27,7 +27,7 @@ typedef struct TcRender {
   TcWorking *workers;               /* [threads] */
   bool bounded;                     /* a bound on the error is gathered as well */
   bool counted;                     /* the cells that rays cross are counted as well */
-  bool plain;                       /* the sums are the frame's pixels as they are, and there are no channels */
+  bool plain;                       /* the first sums are the frame's pixels as they are, and there are no channels */
   int64_t first_row;                /* of the job's picture, which the frame begins with */
   int64_t tiles_x, tiles_y;
 } TcRender;
