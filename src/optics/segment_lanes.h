@@ -114,21 +114,21 @@ TC_INLINE TcSegments tc_segments_thick(TcVec a, TcVec a1) {
 }
 
 #if TC_HAVE_COMPRESS
-/* The same for half of the lanes at most, those of `thick`: their near ends and their far ends share vectors. Others
- * are left as they are. */
+/* The same, with the same bits, for `thick` lanes that are at most half of all: their near ends and their far ends
+ * share vectors, so that roots, reciprocals and the table's values are found once. Other lanes stay as they are. */
 TC_INLINE void tc_segments_few_thick(TcMask thick, TcVec a, TcVec a1, TcSegments *segments) {
   const TcVec most = tc_set((TcReal)(TC_SINGLE ? 1e37 : 1e300)), zero = tc_set(0);
   const int count = __builtin_popcount(tc_bits(thick));
-  const TcMask far = tc_mask_of(((1U << count) - 1) << count), ends = tc_mask_of((1U << 2 * count) - 1);
+  const TcMask used = tc_mask_of((1U << 2 * count) - 1), second = tc_mask_of(((1U << count) - 1) << count);
   a = tc_compress(thick, tc_min(a, most));
   a1 = tc_compress(thick, tc_min(a1, most));
-  const TcVec change = a1 - a, b = tc_expand(far, change, change), end = tc_select(ends, tc_expand(far, a1, a), tc_set(1));
+  const TcVec b = tc_expand(second, a1 - a, a1 - a), end = tc_select(used, tc_expand(second, a1, a), tc_set(1));
   const TcMask rises = tc_le(zero, b);
   const TcVec first = tc_select(rises, zero, tc_set(TC_MILLS_ROWS)),
               rows = tc_select(rises, tc_set(TC_MILLS_ROWS), tc_set(TC_DAWSON_ROWS));
   const TcVec r = tc_sqrt(tc_select(rises, b, -8 * b)), inverse = 1 / (r + end);
-  const TcVec e = tc_exp((TcReal)-0.5 * a - (TcReal)0.5 * a1), at_end = tc_special(first, rows, r * inverse) * inverse;
-  const TcVec psi = at_end - e * tc_compress(far, at_end);
+  const TcVec e = tc_exp((TcReal)-0.5 * a - (TcReal)0.5 * a1), value = tc_special(first, rows, r * inverse) * inverse;
+  const TcVec psi = value - e * tc_compress(second, value);
   segments->alpha = tc_expand(thick, 1 - e, segments->alpha);
   segments->w0 = tc_expand(thick, 1 - psi, segments->w0);
   segments->w1 = tc_expand(thick, psi - e, segments->w1);

@@ -145,7 +145,32 @@ static void extremes(void **state) {
   }
 }
 
+/* A deep segment gives the same bits, however few or many deep ones there are beside it in other lanes. */
+static void neighbors(void **state) {
+  (void)state;
+  enum { N = 960, MOST = 6 };
+  static double a[N], a1[N];
+  static TcSegment all[N], some[N];
+  for (int k = 0; k < KERNELS; ++k) {
+    if (!tc_cpu_has(kernels[k].isa))
+      continue;
+    for (int apart = 1; apart <= MOST; ++apart) {
+      for (int i = 0; i < N; ++i) {
+        const bool deep = i % apart == 0;
+        a[i] = deep ? (double)(float)(1.1 + 40 * sin(i * 0.7) * sin(i * 0.7)) : 0.03125;
+        a1[i] = deep ? (double)(float)(1.1 + 40 * sin(i * 1.3) * sin(i * 1.3)) : 0.0625;
+      }
+      kernels[k].evaluate(a, a1, N, some, NULL);
+      for (int i = 0; i < N && apart == 1; ++i)
+        all[i] = some[i];
+      for (int i = 0; i < N; i += apart) {
+        assert_true(some[i].w0 == all[i].w0 && some[i].w1 == all[i].w1 && some[i].alpha == all[i].alpha);
+      }
+    }
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(table), cmocka_unit_test(extremes)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(table), cmocka_unit_test(extremes), cmocka_unit_test(neighbors)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,6 +14,31 @@ typedef struct Look {
   TetcastRenderStats stats;
 } Look;
 
+/* A frame without channels, whose rows lie apart, has the same pixels, and its largest bound is known all the same. */
+static void look_plainly(TetcastContext *context, const TetcastScene *scene, const TetcastCamera *camera,
+                         const TetcastRenderDesc *desc, const Look *look) {
+  enum { ROW = 4 * WIDTH + 3 };
+  static double pixels[ROW * HEIGHT];
+  for (int i = 0; i < ROW * HEIGHT; ++i)
+    pixels[i] = -1;
+  TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
+  frame_desc.width = WIDTH;
+  frame_desc.height = HEIGHT;
+  frame_desc.pixels = pixels;
+  frame_desc.row_stride = ROW * sizeof *pixels;
+  TetcastFrame *frame = NULL;
+  TetcastRenderStats stats;
+  assert_int_equal(tetcast_frame_create(context, &frame_desc, &frame), TETCAST_OK);
+  assert_int_equal(tetcast_scene_render(scene, camera, desc, frame, &stats), TETCAST_OK);
+  for (int i = 0; i < HEIGHT; ++i) {
+    assert_memory_equal(pixels + i * ROW, look->rgba + i * 4 * WIDTH, 4 * WIDTH * sizeof *pixels);
+    for (int k = 4 * WIDTH; k < ROW; ++k)
+      assert_true(pixels[i * ROW + k] == -1);
+  }
+  assert_true(stats.error == look->stats.error);
+  tetcast_frame_destroy(&frame);
+}
+
 static void look(TetcastContext *context, const TetcastScene *scene, const TetcastCamera *camera, TetcastIsa isa,
                  double tolerance, Look *look) {
   TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
@@ -30,6 +55,8 @@ static void look(TetcastContext *context, const TetcastScene *scene, const Tetca
   memcpy(look->rgba, tetcast_frame_pixels(frame), sizeof look->rgba);
   memcpy(look->error, tetcast_frame_channel(frame, TETCAST_CHANNEL_ERROR), sizeof look->error);
   tetcast_frame_destroy(&frame);
+  if (tolerance > 0)
+    look_plainly(context, scene, camera, &desc, look);
 }
 
 /* What is seen with a tolerance is as near to the exact picture of the same kernel as is said: where cells overlap,
