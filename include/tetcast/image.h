@@ -30,7 +30,8 @@ typedef enum TetcastPixelType {
 /* A colour map or a list of colours with words beside it, drawn over the right of a picture by OpenImageIO's functions.
  */
 typedef struct TetcastLegend {
-  /* What the colours stand for, in UTF-8; NULL: nothing is written above them. */
+  /* What the colours stand for, in UTF-8; NULL: nothing is written above them. Where OpenImageIO draws ASCII alone,
+   * other letters of any text in a picture become question marks, with a warning. */
   const char *title;
   /* [color_count][3]: red, green and blue in [0, 1]; of a bar from below at equal distances, of categories from above.
    */

@@ -24,6 +24,17 @@ differ lines.ppm soft.ppm 'an outline'
 refuse 2 'exclude each other' render cube.vtu -o no.ppm --bare --legend
 accept render cube.vtu -o title.ppm $size --legend='Temperature [K]'
 differ title.ppm first.ppm 'a title'
+# Letters that aren't ASCII are drawn, or, where OpenImageIO can't, a warning says what stands for them.
+checks=$((checks + 1))
+"$tetcast" render cube.vtu -o letters.ppm $size --legend='Größe [°C]' 2>"$work.err" || fail 'letters are refused'
+cp "$work.err" letters.txt
+accept render cube.vtu -o marks.ppm $size --legend='Gr??e [?C]'
+if grep -q "warning: image 'letters.ppm': letters of 'Größe \[°C\]' are drawn as question marks" letters.txt; then
+  same letters.ppm marks.ppm 'a question mark for each letter'
+else
+  [ ! -s letters.txt ] || fail "$(cat letters.txt)"
+  differ letters.ppm marks.ppm 'letters'
+fi
 
 # pixel FILE X Y: the three numbers of a pixel of a PPM picture of 320 × 240.
 pixel() { tail -c $((3 * 320 * 240)) "$1" | od -An -v -tu1 -j $((3 * ($3 * 320 + $2))) -N 3 | xargs; }

@@ -395,8 +395,7 @@ Scenery make_scenery(TetcastContext *context, const char *path, int64_t width, i
   for (int i = 0; i < desc.caption_count; i++)
     scenery.overlays.push_back(tetcast::draw_caption(desc.captions[i], width, height, ink, problem));
   if (!problem.empty())
-    tetcast_context_message(context, TETCAST_SEVERITY_WARNING, "image '%s': the picture has no words: %s", path,
-                            problem.c_str());
+    tetcast_context_message(context, TETCAST_SEVERITY_WARNING, "image '%s': %s", path, problem.c_str());
   return scenery;
 }
 

@@ -7,6 +7,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/strutil.h>
 
 namespace {
 
@@ -30,6 +31,25 @@ std::string find_font() {
   return "";
 }
 
+// Whether OpenImageIO finds the letters in UTF-8. Some of its versions, 2.4.7 in Debian 12 among them, take only the
+// last bits of each letter that isn't ASCII, and draw another one: 0 for a degree sign.
+bool draws_all_letters() {
+  std::vector<uint32_t> letters;
+  OIIO::Strutil::utf8_to_unicode("\xC2\xB0", letters);
+  return letters.size() == 1 && letters[0] == 0xB0;
+}
+
+// Text with a question mark for each letter that isn't ASCII.
+std::string in_ascii(const char *text) {
+  std::string plain;
+  for (; *text; text++)
+    if (const auto byte = static_cast<unsigned char>(*text); byte < 0x80)
+      plain += *text;
+    else if (byte >= 0xC0) // the first byte of a letter
+      plain += '?';
+  return plain;
+}
+
 // Where things go, in pixels of the picture.
 struct Layout {
   int font = 0, bar = 0; // sizes of letters and width of the bar
@@ -42,12 +62,13 @@ class Writer {
 public:
   explicit Writer(int size) : m_size(size), m_font(find_font()) {}
 
-  // Why there is no text, "": there is.
+  // What is wrong with the text, "": nothing.
   std::string problem() const {
-    return m_font.empty() ? "no font was found; the package fonts-dejavu-core has one" : m_problem;
+    return m_font.empty() ? "the picture has no words: no font was found; the package fonts-dejavu-core has one"
+                          : m_problem;
   }
   int width(const char *text) {
-    return m_font.empty() || !text || !*text ? 0 : std::max(0, Algo::text_size(text, m_size, m_font).width());
+    return m_font.empty() || !text || !*text ? 0 : std::max(0, Algo::text_size(drawn(text), m_size, m_font).width());
   }
   // Draws text that begins at `left`, its middle line at `middle`.
   void draw(ImageBuf &image, int left, int middle, const char *text, float ink) {
@@ -55,14 +76,21 @@ public:
       return;
     const float color[4] = {ink, ink, ink, 1};
     const int baseline = middle + int(std::lround(0.36 * m_size)); // half the height of capitals and digits
-    if (!Algo::render_text(image, left, baseline, text, m_size, m_font, color, Algo::TextAlignX::Left,
+    const std::string shown = drawn(text);
+    if (!Algo::render_text(image, left, baseline, shown, m_size, m_font, color, Algo::TextAlignX::Left,
                            Algo::TextAlignY::Baseline) &&
         m_problem.empty())
-      m_problem = image.geterror();
+      m_problem = "the picture has no words: " + image.geterror();
+    if (shown != text && m_problem.empty())
+      m_problem = "letters of '" + std::string(text) +
+                  "' are drawn as question marks: this version of OpenImageIO draws ASCII alone";
   }
 
 private:
+  std::string drawn(const char *text) const { return m_all_letters ? text : in_ascii(text); }
+
   int m_size;
+  bool m_all_letters = draws_all_letters();
   std::string m_font, m_problem;
 };
 

@@ -24,7 +24,7 @@ struct Overlay {
 };
 
 // Draws the legend for a picture of this size; ink 0 is black, 1 is white. Nothing is drawn where there is no room.
-// `problem` becomes what the text is missing for, "": it is there.
+// `problem` becomes what is wrong with the text, "": nothing.
 Overlay draw_legend(const TetcastLegend &legend, int64_t width, int64_t height, float ink, std::string &problem);
 
 // Draws words for a picture of this size.
