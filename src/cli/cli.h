@@ -58,7 +58,9 @@ void cli_messages_hold(bool hold);
 /* Lets the next error be shown though there was one: for a process that goes on after errors. */
 void cli_forget_errors(void);
 
-/* Puts "PLACE: " before the library's errors (NULL: nothing): for calls whose arguments came from a file. */
+/* Puts "PLACE: " before the library's errors on this thread (NULL: nothing): for calls whose arguments came from a
+ * file.
+ */
 void cli_set_place(const char *place);
 
 /* Puts `hint` behind the library's errors (NULL: nothing): what may have been meant. */

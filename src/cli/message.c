@@ -12,7 +12,7 @@
 
 static struct {
   bool quiet;
-  const char *place, *hint;
+  const char *hint;
   bool failed; /* an error has been shown; guarded by the lock of stderr, as is the list */
   bool once, strict;
   bool refused; /* a warning was an error */
@@ -26,6 +26,8 @@ static struct {
   struct Message *kept; /* of other threads */
   int kept_count, kept_capacity;
 } messages;
+
+static _Thread_local const char *place_now; /* others write former pictures, or load libraries, beside it */
 
 enum { MESSAGE_ERROR, MESSAGE_WARNING, MESSAGE_NOTE };
 
@@ -90,7 +92,7 @@ void cli_forget_errors(void) {
 }
 
 void cli_set_place(const char *place) {
-  messages.place = place;
+  place_now = place;
 }
 
 void cli_set_hint(const char *hint) {
@@ -195,11 +197,11 @@ static void receive(void *user, TetcastSeverity severity, const char *text) {
   (void)user;
   if (severity == TETCAST_SEVERITY_ERROR) {
     char *whole = cli_print("%s%s", text, messages.hint ? messages.hint : "");
-    (messages.lenient ? show_warning : show_error)(messages.place, whole);
+    (messages.lenient ? show_warning : show_error)(place_now, whole);
     free(whole);
   }
   if (severity == TETCAST_SEVERITY_WARNING)
-    show_warning(messages.place, text);
+    show_warning(place_now, text);
 }
 
 void cli_error(const char *format, ...) {
@@ -216,7 +218,7 @@ void cli_warning(const char *format, ...) {
   va_start(list, format);
   char *text = cli_print_list(format, list);
   va_end(list);
-  show_warning(messages.place, text);
+  show_warning(place_now, text);
   free(text);
 }
 
@@ -243,6 +245,6 @@ TetcastContext *cli_context_create(int threads) {
 int cli_failed(TetcastStatus status) {
   if (cli_interrupted())
     return 128 + cli_interrupted();
-  show_error(messages.place, tetcast_status_string(status));
+  show_error(place_now, tetcast_status_string(status));
   return CLI_FAILED;
 }

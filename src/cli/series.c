@@ -101,7 +101,8 @@ char *series_name(const RenderOptions *options, int64_t step) {
 
 static void show_step(Series *series, const char *what, int64_t step) {
   snprintf(series->label, sizeof series->label, "%s %lld/%lld", what, (long long)step + 1, (long long)series->count);
-  snprintf(series->place, sizeof series->place, "step %lld", (long long)step);
+  const char *unit = series->tour.count > 0 ? "frame" : "step";
+  snprintf(series->place, sizeof series->place, "%s %lld", unit, (long long)step);
   cli_set_place(series->count > 1 ? series->place : NULL);
 }
 
