@@ -38,6 +38,19 @@ static const char *set_inputs(RenderOptions *options, const json_t *list) {
   return fine ? NULL : "expected a path, or a list of paths that differ in one number";
 }
 
+/* Of an option that may be given several times. NULL, or what is wrong. */
+static const char *set_texts(RenderOptions *options, OptionId id, const json_t *json) {
+  const bool several = json_is_array(json);
+  const size_t count = several ? json_array_size(json) : 1;
+  const char *reason = NULL;
+  for (size_t i = 0; !reason && i < count; i++) {
+    const OptionValue value = {.text = json_string_value(several ? json_array_get(json, i) : json)};
+    reason = value.text ? render_options_set(options, id, &value)
+                        : "expected text, written as for the option, or a list of such texts";
+  }
+  return reason;
+}
+
 static bool set_value(RenderOptions *options, OptionId id, const char *key, const json_t *json) {
   OptionValue value = {.text = json_string_value(json)};
   char *path = NULL;
@@ -59,11 +72,8 @@ static bool set_value(RenderOptions *options, OptionId id, const char *key, cons
   } else if (id == OPTION_TRANSFER && json_is_object(json)) {
     json_decref(options->transfer_object);
     options->transfer_object = json_deep_copy(json);
-  } else if (render_option_is_list(id) && json_is_array(json)) {
-    for (size_t i = 0; !reason && i < json_array_size(json); i++) {
-      value.text = json_string_value(json_array_get(json, i));
-      reason = render_options_set(options, id, &value);
-    }
+  } else if (render_option_is_list(id)) {
+    reason = set_texts(options, id, json);
   } else if (id == OPTION_INPUT && json_is_array(json)) {
     reason = set_inputs(options, json);
   } else if (id == OPTION_CLIP) {

@@ -42,6 +42,13 @@ for name in red preset both; do
   same again.png $name.png "scene of $name"
 done
 accept render --scene both.json -o other.png --isosurface 3:red --shade none
+for value in 3 '[3]' '[3, "2"]' true; do
+  printf '{"input": "cube.vtu", "array": "s", "isosurface": %s}' "$value" >numbers.json
+  refuse 1 'numbers.json: isosurface: expected text, written as for the option, or a list' render --scene numbers.json -o bad.png
+done
+printf '{"input": "cube.vtu", "array": "s", "isosurface": "3:red", "slice": ["0,0,1,0.5", "1,0,0,0.5:0.3"]}' >texts.json
+accept render --scene texts.json -o texts.png
+rm numbers.json texts.json
 differ other.png both.png 'the list of the command line'
 sed 's/"isosurface": \[[^]]*\]/"isosurface": "3:red"/' red.json >text.json
 accept render --scene text.json -o again.png
