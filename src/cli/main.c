@@ -91,7 +91,7 @@ int main(int argc, char **argv) {
   cli_interrupt_catch();
   opterr = 0;
   if (argc < 2)
-    return cli_usage_error("", "no command given: render, converge, cast, info or mesh");
+    return cli_usage_error("", "no command given: render, converge, transfer, cast, info or mesh");
   const char *word = argv[1];
   const Command *command = find_command(word);
   if (command)

@@ -8,7 +8,7 @@ contains 'Embree [34]\.'
 contains 'adapters:'
 accept --help
 contains 'render'
-for command in render converge cast info mesh; do
+for command in render converge transfer cast info mesh; do
   accept $command --help
   contains "Usage: tetcast $command"
   contains 'Example'
@@ -20,7 +20,7 @@ accept -V
 contains '^tetcast [0-9]'
 accept help
 contains 'Usage: tetcast COMMAND'
-for command in render converge cast info mesh completion; do
+for command in render converge transfer cast info mesh completion; do
   accept help $command
   contains "Usage: tetcast $command"
 done
@@ -30,7 +30,7 @@ start=$(date +%s%N)
 for _ in 1 2 3 4 5 6 7 8 9 10; do "$tetcast" --version >/dev/null; done
 [ $((($(date +%s%N) - start) / 10000000)) -le 200 ] || fail "--version takes $((($(date +%s%N) - start) / 10000000)) ms"
 
-refuse 2 'no command'
+refuse 2 'no command given: render, converge, transfer, cast, info or mesh'
 refuse 2 "unknown command 'rendre'; did you mean 'render'?" rendre x.vtu
 refuse 2 "unknown command 'rendre'; did you mean 'render'?" help rendre
 refuse 2 "unknown command 'x.vtu' (see" x.vtu
