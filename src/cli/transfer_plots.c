@@ -124,7 +124,7 @@ bool transfer_plots(const char *folder, const char *title, const Candidates *c,
   static const char gradients[] =
       "set xlabel 'value'\nset ylabel 'gradient'\nset y2range [0:1.05]\nset y2label 'extinction, share of the "
       "largest'\n"
-      "set y2tics\nset yrange [0:*]\nset cblabel 'volume, decades below the largest'\nset cbrange [-6:0]\n"
+      "set y2tics\nset yrange [0:*]\nset cblabel 'volume, decades below the largest' offset 2\nset cbrange [-6:0]\n"
       "set palette defined (0 '#ffffff', 1 '#dfe7f2', 3 '#7f9fc9', 5 '#24427c', 6 '#0b1633')\n"
       "plot 'gradients.dat' using 1:2:3 with image notitle, \\\n"
       "  'function.dat' using 1:2 axes x1y2 with lines linewidth 2.4 linecolor rgb '#d55e00' title 'extinction'\n";
