@@ -259,7 +259,7 @@ static void put_script(FILE *file, const Converge *converge, Plot plot) {
       "set xlabel 'time to render, seconds'\n",
       "set xlabel 'n: samples per segment (table: entries a side)'\n"
       "set xtics (1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024)\n"
-      "set xrange [0.9:1200]\n",
+      "set xrange [0.9:1200]\nset key width 0 # its words are short\n",
       "set xlabel 'factor on the extinction'\n"
       "set format x '10^{%L}'\nset xtics 100\nset mxtics 1\n"
       "set yrange [*:100] # an integrator that leaves all bounds leaves the plot\nset clip two\n",
