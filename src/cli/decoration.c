@@ -102,7 +102,8 @@ static void make_categories(const Stage *stage, Decoration *d) {
 
 /* Whether colours stand for values of one array. */
 static bool has_legend(const Stage *stage, const RenderOptions *options) {
-  if (render_options_direct(options) || !stage->array || stage->rows.count > 0 || !stage->transfer_function)
+  if (render_options_direct(options) || !stage->array || stage->rows.count > 0 || !stage->transfer_function ||
+      !surfaces_show_values(options))
     return false;
   return render_options_given(options, OPTION_LEGEND) || render_options_decorated(options);
 }

@@ -44,6 +44,18 @@ static TetcastStatus set_isosurfaces(TetcastScene *scene, const TextList *list,
   return status;
 }
 
+bool surfaces_show_values(const RenderOptions *options) {
+  if (!render_options_surfaces_alone(options) || options->slices.count > 0)
+    return true;
+  TetcastBoundary boundary;
+  bool own = !options->surface || !surfaces_parse_boundary(options->surface, &boundary) || boundary.colored;
+  for (int i = 0; own && i < options->isosurfaces.count; i++) {
+    TetcastIsosurface isosurface;
+    surfaces_parse(options->isosurfaces.text[i], &isosurface, &own);
+  }
+  return !own;
+}
+
 void surfaces_outline(const RenderOptions *options, double color[3]) {
   const double *back = options->background;
   const double brightness = 1 - back[3] + back[3] * (0.2126 * back[0] + 0.7152 * back[1] + 0.0722 * back[2]);

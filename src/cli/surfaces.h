@@ -16,6 +16,10 @@ TetcastStatus surfaces_set_colors(TetcastContext *context, TetcastScene *scene,
 TetcastStatus surfaces_set(TetcastScene *scene, const RenderOptions *options,
                            const TetcastTransferFunction *transfer_function, const double range[2]);
 
+/* Whether anything has the colours that stand for values: not where each surface has one of its own, and there is
+ * nothing else. */
+bool surfaces_show_values(const RenderOptions *options);
+
 /* The colour of the outline that the options say: black, or white on a dark background, unless they have a colour. */
 void surfaces_outline(const RenderOptions *options, double color[3]);
 

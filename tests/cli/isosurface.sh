@@ -49,6 +49,21 @@ done
 printf '{"input": "cube.vtu", "array": "s", "isosurface": "3:red", "slice": ["0,0,1,0.5", "1,0,0,0.5:0.3"]}' >texts.json
 accept render --scene texts.json -o texts.png
 rm numbers.json texts.json
+
+# A legend shows what some colours stand for, so it isn't there where all have been chosen.
+accept render cube.vtu -o own.png --array s --isosurface 3:red --surface white:0.3 --save-scene own.json
+accept render cube.vtu -o magma.png --array s --isosurface 3:red --surface white:0.3 --preset magma
+same own.png magma.png 'no colour stands for a value'
+accept render --scene own.json -o again.png
+same own.png again.png 'a scene without a legend'
+for surfaces in '--isosurface 3:red --isosurface 4 --surface white:0.3' '--isosurface 3:red --surface 0.3' '--isosurface 3:red --slice 0,0,1,0.5'; do
+  # shellcheck disable=SC2086  # a list of options
+  accept render cube.vtu -o own.png --array s $surfaces
+  # shellcheck disable=SC2086
+  accept render cube.vtu -o title.png --array s $surfaces --legend=title
+  differ own.png title.png "a legend: $surfaces"
+done
+rm own.json
 differ other.png both.png 'the list of the command line'
 sed 's/"isosurface": \[[^]]*\]/"isosurface": "3:red"/' red.json >text.json
 accept render --scene text.json -o again.png
