@@ -361,6 +361,9 @@ static const char *find_rays_fault(const RenderOptions *options) {
 static int check_use(const RenderOptions *options) {
   if (options->command == COMMAND_TRANSFER && !options->output)
     return cli_usage_error("transfer", "no file for the transfer function given: -o FUNCTION.json");
+  if (options->command == COMMAND_TRANSFER && !render_option_has_extension(options->output, ".json"))
+    return cli_usage_error("transfer", "--output %s: expected the name of a .json file; --sheet has the picture",
+                           options->output);
   if (options->command == COMMAND_TRANSFER && options->time && !strcmp(options->time, "all"))
     return cli_usage_error("transfer", "--time all: expected a single step");
   if (options->command == COMMAND_TRANSFER && options->inputs)

@@ -71,6 +71,8 @@ refuse 2 'a candidate' transfer l.vtk -o x.json --take 0
 refuse 2 'single step' transfer l.vtk -o x.json --time all
 refuse 1 'does not exist' transfer l.vtk -o no/x.json
 refuse 1 'are not supported' transfer l.vtk -o x.json --sheet x.xyz
-refuse 2 'would replace the input' transfer l.vtk -o l.vtk
+refuse 2 'x.png: expected the name of a .json file' transfer l.vtk -o x.png # which would be lost
+cp l.vtk l.json
+refuse 2 'would replace the input' transfer l.json -o l.json
 refuse 2 'unknown or ambiguous option --samples' transfer l.vtk -o x.json --samples 2
 finish
