@@ -273,7 +273,7 @@ static void check_cells_of(const char *path, ArrayType *offsets, ArrayType *indi
            static_cast<long long>(offset[i + 1]),
            offset[i + 1] > size ? "beyond the end of the list of points" : "less than the one before");
     }
-    for (int64_t j = offset[i]; j < offset[i + 1]; ++j) {
+    for (int64_t j = offset[i]; point_count >= 0 && j < offset[i + 1]; ++j) {
       if (index[j] < 0 || index[j] >= point_count) {
         fail(TETCAST_ERROR_DATA, "%s: %s %lld: point index %lld is out of range (there are %lld points)", path, what,
              cell, static_cast<long long>(index[j]), static_cast<long long>(point_count));

@@ -118,7 +118,7 @@ bool has_extension(const char *path, const char *extension); // ".vtu", in any c
 int64_t first_nonfinite(vtkDataArray *data);               // value, of all components; -1: there is none
 void check_dimension(const char *path, vtkPoints *points); // three coordinates each
 void check_points(const char *path, vtkPoints *points);    // and finite ones
-void check_cells(const char *path, vtkCellArray *cells, int64_t point_count, const char *what);
+void check_cells(const char *path, vtkCellArray *cells, int64_t point_count, const char *what); // -1: offsets alone
 
 TetcastType type_of(const vtkDataArray *array);   // NONE for types TetcastType lacks
 const char *type_name(const vtkDataArray *array); // "float64", "int8" …; static storage

@@ -619,7 +619,7 @@ void check_face_streams(const char *path, vtkUnsignedCharArray *types, vtkCellAr
 
 // Checks that offsets lie within the list. Indices are checked by those who use them.
 void check_offsets(const char *path, vtkCellArray *cells) {
-  tcv::check_cells(path, cells, INT64_MAX, "cell");
+  tcv::check_cells(path, cells, -1, "cell");
 }
 
 vtkSmartPointer<vtkUnstructuredGrid> read_grid(const char *path, std::vector<tcv::UnreadArray> *unread) {
