@@ -205,11 +205,11 @@ typedef struct TetcastRenderDesc {
   TetcastIsa isa;
   /* How far each of a pixel's four channels may be from the exact picture's, finite and ≥ 0, in the units of the
    * channel (alpha: 1 is opaque). A larger tolerance makes pictures faster. Default: 0, exact. Only with the exact
-   * integrator. TETCAST_CHANNEL_ERROR is above it only where it is for the exact picture as well: where a ray lies in
-   * faces to all digits. Rays are walked in single precision where a bound on its error allows it: with a point field
-   * without NaN, a transfer function without jumps, a mesh that doesn't fold over itself (no cell is turned inside out
-   * against its neighbour), and AVX2 or AVX-512; from 1e-3 or 1e-4 on, depending on how steep field and transfer
-   * function are.
+   * integrator. TETCAST_CHANNEL_ERROR, which is measured only where it is asked for, is above it only where it is for
+   * the exact picture as well: where a ray lies in faces to all digits. Rays are walked in single precision where a
+   * bound on its error allows it: with a point field without NaN, a transfer function without jumps, a mesh that
+   * doesn't fold over itself (no cell is turned inside out against its neighbour), and AVX2 or AVX-512; from 1e-3 or
+   * 1e-4 on, depending on how steep field and transfer function are.
    */
   double tolerance;
   /* [height · width], float or double, rows from the top, NULL (default) for none: the distance at which every ray of
@@ -255,9 +255,8 @@ typedef struct TetcastRenderStats {
   int64_t rays;
   /* The number of cells crossed over a length > 0, summed over the rays. */
   int64_t segments;
-  /* The largest of the pixels' error bounds (TETCAST_CHANNEL_ERROR), ≥ 0. NaN with an integrator other than the exact
-   * one, with a blend mode other than composite, with adaptive_coarse, and where neither that channel nor a tolerance
-   * was asked for. */
+  /* The largest of the pixels' error bounds (TETCAST_CHANNEL_ERROR), ≥ 0, where they were measured: if the frame has
+   * that channel, or rays were walked in single precision. Else, and with adaptive_coarse, NaN. */
   double error;
   /* The number of rays whose walk ended before the boundary. Anything but 0 is a defect of tetcast. */
   int64_t lost;

@@ -37,7 +37,7 @@ static void add_time(ConvergeRow *row, double seconds) {
   row->seconds = (row->times[(row->timed - 1) / 2] + row->times[row->timed / 2]) / 2;
 }
 
-/* Finds the bound on the exact picture's error. That takes longer than the picture alone, so it is not timed. */
+/* Finds the bound on the picture's error. That takes longer than the picture alone, so it is not timed. */
 static TetcastStatus find_bound(Converge *converge, const TetcastScene *scene, const TetcastCamera *camera,
                                 TetcastRenderDesc desc, const TetcastFrame *like, double *bound) {
   TetcastFrameDesc frame_desc = tetcast_frame_desc_default();
@@ -76,9 +76,9 @@ TetcastStatus converge_render(Converge *converge, const TetcastScene *scene, con
   row->precision = stats.precision;
   row->isa = stats.isa;
   converge->lost += stats.lost;
-  if (row->tolerance > 0)
+  if (!isnan(stats.error))
     row->bound = stats.error;
-  return row->integrator == TETCAST_INTEGRATOR_EXACT && row->tolerance == 0 && row->adaptive == 0 && row->timed == 1
+  return row->integrator == TETCAST_INTEGRATOR_EXACT && isnan(stats.error) && row->adaptive == 0 && row->timed == 1
              ? find_bound(converge, scene, camera, desc, frame, &row->bound)
              : TETCAST_OK;
 }

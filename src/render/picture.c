@@ -312,19 +312,24 @@ static void keep_vertices(const TetcastScene *scene, const TcRender *render, boo
 /* ── all of it ── */
 
 /* Changes the job to single precision where a bound on its error leaves enough of the tolerance; returns whether it
- * did. The bound leaves out two things, with which single precision isn't used: the borders of holes in the field, at
- * which what is seen jumps, and meshes that fold over themselves, where paths of rays change by leaps. */
+ * did. That bound is gathered along each ray, as it tells which rays are walked again. It leaves out two things, with
+ * which single precision isn't used: the borders of holes in the field, at which what is seen jumps, and meshes that
+ * fold over themselves, where paths of rays change by leaps. */
 static bool allow_single(const TetcastScene *scene, const TetcastRenderDesc *desc, const TcScreen *setup,
                          TcRender *render) {
   const TcIsaKernels *kernels = tc_single_kernels_for(desc->isa);
   TcJob *job = &render->job;
+  TcTolerance tolerance;
   double values;
   if (!kernels || job->surfaces || job->lights || job->second || !(desc->tolerance > 0) ||
       job->values->association != TETCAST_POINT || job->values->has_holes || scene->volume->folds)
     return false;
-  if (!tc_tolerance_single(job->pieces, desc->tolerance, scene->values->largest, 2 * scene->volume->radius,
-                           &job->tolerance, &values))
+  if (!tc_tolerance_single(job->pieces, desc->tolerance, scene->values->largest, 2 * scene->volume->radius, &tolerance,
+                           &values))
     return false;
+  tc_job_of_scene(scene, true, job);
+  render->bounded = true;
+  job->tolerance = tolerance;
   render->precise = *job;
   render->precise.tolerance = tc_tolerance_begin(job->pieces, 0, desc->tolerance);
   job->precise = render->kernels;
@@ -348,7 +353,7 @@ static double brightest_of(const TcJob *job) {
 
 /* Decides whether vertices are projected and which precision is used, and sets the tolerance and the error bounds'
  * terms accordingly. */
-static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *desc, bool measured, TcRender *render) {
+static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *desc, bool boundable, TcRender *render) {
   TcJob *job = &render->job;
   TcScreen setup;
   const int64_t rays = job->width * job->height * desc->samples;
@@ -373,7 +378,7 @@ static TetcastStatus plan(const TetcastScene *scene, const TetcastRenderDesc *de
   }
   if (!on_screen)
     return TETCAST_OK;
-  if (measured && job->pieces && allow_single(scene, desc, &setup, render)) {
+  if (boundable && job->pieces && allow_single(scene, desc, &setup, render)) {
     render->precise.resolution = in_ray_space; /* the few rays that are walked again don't use projected vertices */
   }
   return project(scene, render->kernels, &setup, job, &render->screen);
@@ -496,9 +501,9 @@ TetcastStatus tc_render(const TetcastScene *scene, const TetcastCamera *camera, 
   const bool exact = desc->integrator == TETCAST_INTEGRATOR_EXACT;
   const bool normal = tc_frame_channel(frame, TETCAST_CHANNEL_NORMAL) != NULL,
              depth = normal || tc_frame_channel(frame, TETCAST_CHANNEL_DEPTH);
-  const bool measured = exact && !fragments && !scene->blend && !depth && !tc_scene_has_surfaces(scene) &&
-                        !tc_scene_is_lit(scene) && scene->row_count == 0 &&
-                        (desc->tolerance > 0 || tc_frame_channel(frame, TETCAST_CHANNEL_ERROR));
+  const bool boundable = exact && !fragments && !scene->blend && !depth && !tc_scene_has_surfaces(scene) &&
+                         !tc_scene_is_lit(scene) && scene->row_count == 0,
+             measured = boundable && tc_frame_channel(frame, TETCAST_CHANNEL_ERROR);
   TcRender render = {
       .scene = scene, .frame = frame, .fragments = fragments, .first_row = desc->picture_height ? desc->first_row : 0};
   TcJob *job = &render.job;
@@ -534,7 +539,7 @@ TetcastStatus tc_render(const TetcastScene *scene, const TetcastCamera *camera, 
   render.plain = job->pieces && !depth && !render.counted && frame->type == TETCAST_TYPE_FLOAT64 &&
                  !tc_frame_channel(frame, TETCAST_CHANNEL_ERROR);
   render.kernels = tc_kernels_for(one_by_one ? TETCAST_ISA_SCALAR : desc->isa);
-  status = plan(scene, desc, measured, &render); /* this may change to kernels in single precision */
+  status = plan(scene, desc, boundable, &render); /* this may change to kernels in single precision */
   TetcastRenderStats sum = {.rays = frame->width * frame->height * desc->samples,
                             .isa = render.kernels->name,
                             .precision = render.kernels->precision};
@@ -545,7 +550,7 @@ TetcastStatus tc_render(const TetcastScene *scene, const TetcastCamera *camera, 
   keep_vertices(scene, &render, job->precise != NULL);
   tc_sampler_destroy(sampler);
   tc_forget_looks(context, &render);
-  if (!measured || desc->adaptive_coarse > 0)
+  if (!render.bounded || desc->adaptive_coarse > 0)
     sum.error = NAN;
   if (!status && stats)
     *stats = sum;
