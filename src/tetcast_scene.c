@@ -352,6 +352,10 @@ int tetcast_scene_groups(const TetcastScene *scene) {
   return scene->coefficients ? scene->coefficients->groups : 0;
 }
 
+int64_t tetcast_scene_look(const TetcastScene *scene) {
+  return tc_scene_look(scene);
+}
+
 TetcastRenderDesc tetcast_render_desc_default(void) {
   return (TetcastRenderDesc){.cookie = TC_COOKIE, .integrator_n = 1, .samples = 1, .adaptive_fine = 1};
 }

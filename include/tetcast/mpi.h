@@ -160,15 +160,14 @@ typedef struct TetcastMpiStats {
 } TetcastMpiStats;
 
 /* Collective. Renders all parts of all ranks, scenes [count], into every pixel of rank 0's `frame`; `scenes` may be
- * NULL where count is 0. All scenes must have the same transfer function, surfaces and clips, which is not looked at,
- * or coefficients of as many groups (TETCAST_ERROR_ARGUMENT), and show what has fragments
- * (tetcast_scene_render_fragments()). Rank 0's camera and frame hold; for others they may be NULL. `desc` may be NULL:
- * rank 0's holds, but for isa, of which the smallest of all ranks' holds, as does the smallest that all processors
- * have; and for progress, which each rank may have. Cancelled by one rank, all return TETCAST_ERROR_CANCELLED. Rows of
- * a larger picture (TetcastRenderDesc.picture_height) are possible; `stop` and `start` are TETCAST_ERROR_ARGUMENT. Of
- * channels, the frame may have those that only scenes with coefficients have, and must have as many groups as these;
- * others are TETCAST_ERROR_ARGUMENT. `stats` may be NULL. After an error the frame's pixels and channels are
- * unspecified. */
+ * NULL where count is 0. All scenes must have the same look (tetcast_scene_look()) and coefficients of as many groups
+ * (TETCAST_ERROR_ARGUMENT), and show what has fragments (tetcast_scene_render_fragments()). Rank 0's camera and frame
+ * hold; for others they may be NULL. `desc` may be NULL: rank 0's holds, but for isa, of which the smallest of all
+ * ranks' holds, as does the smallest that all processors have; and for progress, which each rank may have. Cancelled by
+ * one rank, all return TETCAST_ERROR_CANCELLED. Rows of a larger picture (TetcastRenderDesc.picture_height) are
+ * possible; `stop` and `start` are TETCAST_ERROR_ARGUMENT. Of channels, the frame may have those that only scenes with
+ * coefficients have, and must have as many groups as these; others are TETCAST_ERROR_ARGUMENT. `stats` may be NULL.
+ * After an error the frame's pixels and channels are unspecified. */
 TETCAST_API TetcastStatus tetcast_mpi_render(TetcastMpi *mpi, const TetcastScene *const *scenes, int64_t count,
                                              const TetcastCamera *camera, const TetcastRenderDesc *desc,
                                              TetcastFrame *frame, TetcastMpiStats *stats);

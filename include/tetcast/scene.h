@@ -189,6 +189,11 @@ TETCAST_API TetcastStatus tetcast_scene_set_coefficients(TetcastScene *scene, co
 /* Number of groups of the coefficients, 0 without. */
 TETCAST_API int tetcast_scene_groups(const TetcastScene *scene);
 
+/* A number ≥ 0 that scenes of parts of a mesh have in common if they show the same of it: transfer functions of one or
+ * two dimensions, isosurfaces and their light, slices. Scenes that show something else have another one, but for a
+ * chance of 2^-62; what follows from the parts themselves, fields, coefficients, and clips, is not in it. */
+TETCAST_API int64_t tetcast_scene_look(const TetcastScene *scene);
+
 /* How a picture is computed. */
 typedef struct TetcastRenderDesc {
   /* Set by tetcast_render_desc_default(), so that a struct which was not made by it is told apart. */

@@ -1113,6 +1113,12 @@ module tetcast
       integer(c_int) :: answer
     end function
 
+    function tetcast_scene_look(scene) result(answer) bind(c)
+      import
+      type(c_ptr), value :: scene
+      integer(c_int64_t) :: answer
+    end function
+
     function tetcast_render_desc_default() result(answer) bind(c)
       import
       type(TetcastRenderDesc) :: answer

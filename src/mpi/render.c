@@ -106,19 +106,22 @@ static TetcastStatus set_order(TetcastMpi *mpi, const TetcastCamera *camera, con
   return TETCAST_OK;
 }
 
-/* The largest number of groups of this rank's scenes, and the smallest times −1; INT64_MIN where there is none. */
-static void find_groups(const Picture *picture, int64_t groups[2]) {
-  groups[0] = groups[1] = INT64_MIN;
+/* The largest number of groups of this rank's scenes, and the smallest times −1; INT64_MIN where there is none. And the
+ * same of their looks. */
+static void find_looks(const Picture *picture, int64_t groups[2], int64_t looks[2]) {
+  groups[0] = groups[1] = looks[0] = looks[1] = INT64_MIN;
   for (int64_t i = 0; i < picture->count; ++i) {
-    const int64_t own = tetcast_scene_groups(picture->scenes[i]);
+    const int64_t own = tetcast_scene_groups(picture->scenes[i]), look = tetcast_scene_look(picture->scenes[i]);
     groups[0] = own > groups[0] ? own : groups[0];
     groups[1] = -own > groups[1] ? -own : groups[1];
+    looks[0] = look > looks[0] ? look : looks[0];
+    looks[1] = -look > looks[1] ? -look : looks[1];
   }
 }
 
-/* Whether all scenes have as many groups, and the frame too, by the largest of all ranks' two numbers. All ranks come
- * to the same here. */
-static TetcastStatus check_groups(Picture *picture, const int64_t groups[2]) {
+/* Whether all scenes show the same, in as many groups, and the frame has as many, by the largest of all ranks' two
+ * numbers each. All ranks come to the same here. */
+static TetcastStatus check_looks(Picture *picture, const int64_t groups[2], const int64_t looks[2]) {
   TetcastMpi *mpi = picture->mpi;
   Order *order = &picture->order;
   const TcMpiView *view = &order->view;
@@ -128,6 +131,11 @@ static TetcastStatus check_groups(Picture *picture, const int64_t groups[2]) {
     return tetcast_context_error(mpi->context, TETCAST_ERROR_ARGUMENT,
                                  "scenes of %" PRId64 " groups and of %" PRId64 ": all must have the same coefficients",
                                  -groups[1], groups[0]);
+  if (!none && looks[0] != -looks[1])
+    return tetcast_context_error(
+        mpi->context, TETCAST_ERROR_ARGUMENT,
+        "not all scenes show the same: transfer functions, isosurfaces, their light and slices "
+        "must be those of all ranks");
   const TetcastChannelInfo *info;
   for (int i = 0; (info = tetcast_channel_info(i)); ++i) {
     if (view->channels & info->channel && count == 0)
@@ -158,10 +166,10 @@ static TetcastStatus share_order(Picture *picture, const TetcastCamera *camera, 
   if (!status && mpi->rank == 0)
     status = set_order(mpi, camera, desc, picture->frame, order);
   const int64_t isa = desc->isa == TETCAST_ISA_AUTO ? TETCAST_ISA_AVX512 : desc->isa;
-  int64_t least[4] = {-mpi->memory, -isa};
+  int64_t least[6] = {-mpi->memory, -isa};
   if (!status)
-    find_groups(picture, least + 2);
-  status = tc_mpi_agree(mpi, status, least, 4);
+    find_looks(picture, least + 2, least + 4);
+  status = tc_mpi_agree(mpi, status, least, 6);
   if (!status)
     status = tc_mpi_broadcast(mpi, 0, order, sizeof *order);
   mpi->memory = status ? mpi->memory : -least[0];
@@ -169,7 +177,7 @@ static TetcastStatus share_order(Picture *picture, const TetcastCamera *camera, 
   if (mpi->isa != TETCAST_ISA_AUTO && mpi->isa < order->desc.isa)
     order->desc.isa = mpi->isa;
   picture->told.user = desc->progress;
-  return status ? status : check_groups(picture, least + 2);
+  return status ? status : check_looks(picture, least + 2, least + 4);
 }
 
 /* ── a rank's own parts ── */

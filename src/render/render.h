@@ -100,6 +100,8 @@ TetcastStatus tc_scene_set_transfer_rows(TetcastScene *scene, const TetcastTrans
 TetcastStatus tc_scene_scale_rows(const TetcastScene *scene, const TcPieces *hull, TcSecond *second);
 void tc_scene_clear_rows(TetcastScene *scene);
 TetcastStatus tc_scene_set_isosurfaces(TetcastScene *scene, const TetcastIsosurface *isosurfaces, int count);
+/* See tetcast_scene_look(). */
+int64_t tc_scene_look(const TetcastScene *scene);
 /* Whether there are surfaces of any kind. */
 bool tc_scene_has_surfaces(const TetcastScene *scene);
 TcLighting tc_lighting_of(const TetcastShadingDesc *desc);

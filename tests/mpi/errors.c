@@ -78,6 +78,45 @@ static void agreement(void **state) {
   ranks_end(&ranks);
 }
 
+/* All refuse a picture of which one scene shows something else than the others: another transfer function, an
+ * isosurface, a slice, an isosurface in another light. */
+static void one_looks_different(World *world, bool fails) {
+  enum { TRANSFER, SURFACE, SLICE, LIGHT, LOOKS };
+  Pieces *pieces = &world->pieces;
+  TetcastScene *const scene = pieces->scenes[0];
+  const TetcastIsosurface surface = {.value = 0.5, .color = {1, 1, 1}, .opacity = 0.5};
+  const TetcastSlice slice = {.normal = {0, 0, 1}, .offset = 0.5, .opacity = 0.5};
+  TetcastShadingDesc shading = tetcast_shading_desc_default();
+  TetcastTransferFunction *all = transfer_of(world->ranks.fixture.context, 0.3),
+                          *other = transfer_of(world->ranks.fixture.context, 0.4);
+  shading.normals = TETCAST_NORMALS_FLAT;
+  for (int look = 0; look < LOOKS; ++look) {
+    for (int64_t i = 0; i < pieces->count; ++i) {
+      assert_int_equal(tetcast_scene_set_shading(pieces->scenes[i], &shading), TETCAST_OK);
+      assert_int_equal(tetcast_scene_set_isosurfaces(pieces->scenes[i], &surface, look == LIGHT), TETCAST_OK);
+    }
+    assert_int_equal(render(world, NULL), TETCAST_OK);
+    shading.ambient += 0.1;
+    if (fails && look == TRANSFER)
+      assert_int_equal(tetcast_scene_set_transfer_function(scene, other), TETCAST_OK);
+    if (fails && look == SURFACE)
+      assert_int_equal(tetcast_scene_set_isosurfaces(scene, &surface, 1), TETCAST_OK);
+    if (fails && look == SLICE)
+      assert_int_equal(tetcast_scene_set_slices(scene, &slice, 1), TETCAST_OK);
+    if (fails && look == LIGHT)
+      assert_int_equal(tetcast_scene_set_shading(scene, &shading), TETCAST_OK);
+    assert_int_equal(render(world, NULL), TETCAST_ERROR_ARGUMENT);
+    assert_non_null(strstr(world->ranks.fixture.message, "not all scenes show the same"));
+    assert_int_equal(tetcast_scene_set_slices(scene, NULL, 0), TETCAST_OK);
+    pieces_set_transfer(pieces, all);
+  }
+  for (int64_t i = 0; i < pieces->count; ++i)
+    assert_int_equal(tetcast_scene_set_isosurfaces(pieces->scenes[i], NULL, 0), TETCAST_OK);
+  tetcast_transfer_function_destroy(&all);
+  tetcast_transfer_function_destroy(&other);
+  check_good(world);
+}
+
 static void what_is_refused_on_one_rank(void **state) {
   (void)state;
   World world;
@@ -102,6 +141,7 @@ static void what_is_refused_on_one_rank(void **state) {
     assert_int_equal(render(&world, NULL), TETCAST_ERROR_ARGUMENT);
     check_message(&world, failed, "another blend mode", TETCAST_ERROR_ARGUMENT);
     assert_int_equal(tetcast_scene_set_blend(scene, TETCAST_BLEND_COMPOSITE), TETCAST_OK);
+    one_looks_different(&world, fails);
     TetcastRenderDesc desc = tetcast_render_desc_default();
     if (fails)
       desc.cookie = 5;
