@@ -174,7 +174,7 @@ tetcast::Overlay tetcast::draw_legend(const TetcastLegend &legend, int64_t width
   Overlay overlay;
   if (width < 240 || height < 160 || legend.color_count < 1)
     return overlay;
-  const int font = int(std::min<int64_t>(std::max<int64_t>(height / 44, 10), 400));
+  const int font = int(std::min<int64_t>(std::max<int64_t>(std::min(width, height) / 44, 10), 400));
   Writer writer(font);
   const Layout layout = lay_out(legend, width, height, writer, font);
   if (layout.left < width / 2 || layout.title_top - font < 0)
