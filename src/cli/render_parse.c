@@ -43,7 +43,7 @@ static const char *find_darkness(const RenderOptions *options) {
     return "--shadows: need a --light, as the one at the eye casts no shadow that it sees";
   if ((options->shadows || options->ambient_occlusion > 0 || render_options_lit(options)) &&
       render_options_surfaces_alone(options))
-    return "--shade volume, --shadows, --ambient-occlusion: need a volume: a --transfer beside the surfaces";
+    return "--shade volume or all, --shadows, --ambient-occlusion: need a volume: a --transfer beside the surfaces";
   if (!render_options_lit(options))
     return NULL;
   if (options->command == COMMAND_CONVERGE)
