@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Rendering in situ: heat spreads through a cube, and each time step is rendered in the same process, from the
  * simulation's own arrays. The mesh is handed to tetcast once; a step only replaces the field's values.
- * At the end a strip of snapshots is written: diffusion.png with OpenImageIO, else diffusion.ppm. */
+ * At the end a strip of snapshots is written: diffusion.png with OpenImageIO, else diffusion.ppm.
+ *     cc diffusion.c kuhn.c $(pkg-config --cflags --libs tetcast) -lm -o diffusion
+ * or, for PNG, with -DWITH_OPENIMAGEIO and the package tetcast-openimageio. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
