@@ -98,16 +98,26 @@ TC_INLINE TcVec tc_special(TcVec first, TcVec rows, TcVec t) {
   return sum;
 }
 
+/* Of segments deeper than ½ whose extinction times length changes by b: the table's rows, Mills' where it rises and
+ * Dawson's where it falls, and the root of what there is of b. */
+typedef struct TcThick {
+  TcVec first, rows, r;
+} TcThick;
+TC_INLINE TcThick tc_thick(TcVec b) {
+  const TcVec zero = tc_set(0);
+  const TcMask rises = tc_le(zero, b);
+  return (TcThick){tc_select(rises, zero, tc_set(TC_MILLS_ROWS)),
+                   tc_select(rises, tc_set(TC_MILLS_ROWS), tc_set(TC_DAWSON_ROWS)),
+                   tc_sqrt(tc_select(rises, b, -8 * b))};
+}
+
 /* T > ½, as psi() of segment.c does it. */
 TC_INLINE TcSegments tc_segments_thick(TcVec a, TcVec a1) {
-  const TcVec most = tc_set((TcReal)(TC_SINGLE ? 1e37 : 1e300)), zero = tc_set(0);
+  const TcVec most = tc_set((TcReal)(TC_SINGLE ? 1e37 : 1e300));
   a = tc_min(a, most);
   a1 = tc_min(a1, most);
-  const TcVec b = a1 - a;
-  const TcMask rises = tc_le(zero, b);
-  const TcVec first = tc_select(rises, zero, tc_set(TC_MILLS_ROWS)),
-              rows = tc_select(rises, tc_set(TC_MILLS_ROWS), tc_set(TC_DAWSON_ROWS));
-  const TcVec r = tc_sqrt(tc_select(rises, b, -8 * b)), near = 1 / (r + a), far = 1 / (r + a1);
+  const TcThick thick = tc_thick(a1 - a);
+  const TcVec first = thick.first, rows = thick.rows, r = thick.r, near = 1 / (r + a), far = 1 / (r + a1);
   const TcVec e = tc_exp((TcReal)-0.5 * a - (TcReal)0.5 * a1);
   const TcVec psi = tc_special(first, rows, r * near) * near - e * (tc_special(first, rows, r * far) * far);
   return (TcSegments){1 - e, 1 - psi, psi - e};
@@ -117,17 +127,15 @@ TC_INLINE TcSegments tc_segments_thick(TcVec a, TcVec a1) {
 /* The same, with the same bits, for `thick` lanes that are at most half of all: their near ends and their far ends
  * share vectors, so that roots, reciprocals and the table's values are found once. Other lanes stay as they are. */
 TC_INLINE void tc_segments_few_thick(TcMask thick, TcVec a, TcVec a1, TcSegments *segments) {
-  const TcVec most = tc_set((TcReal)(TC_SINGLE ? 1e37 : 1e300)), zero = tc_set(0);
+  const TcVec most = tc_set((TcReal)(TC_SINGLE ? 1e37 : 1e300));
   const int count = __builtin_popcount(tc_bits(thick));
   const TcMask used = tc_mask_of((1U << 2 * count) - 1), second = tc_mask_of(((1U << count) - 1) << count);
   a = tc_compress(thick, tc_min(a, most));
   a1 = tc_compress(thick, tc_min(a1, most));
-  const TcVec b = tc_expand(second, a1 - a, a1 - a), end = tc_select(used, tc_expand(second, a1, a), tc_set(1));
-  const TcMask rises = tc_le(zero, b);
-  const TcVec first = tc_select(rises, zero, tc_set(TC_MILLS_ROWS)),
-              rows = tc_select(rises, tc_set(TC_MILLS_ROWS), tc_set(TC_DAWSON_ROWS));
-  const TcVec r = tc_sqrt(tc_select(rises, b, -8 * b)), inverse = 1 / (r + end);
-  const TcVec e = tc_exp((TcReal)-0.5 * a - (TcReal)0.5 * a1), value = tc_special(first, rows, r * inverse) * inverse;
+  const TcThick both = tc_thick(tc_expand(second, a1 - a, a1 - a));
+  const TcVec end = tc_select(used, tc_expand(second, a1, a), tc_set(1)), inverse = 1 / (both.r + end),
+              value = tc_special(both.first, both.rows, both.r * inverse) * inverse,
+              e = tc_exp((TcReal)-0.5 * a - (TcReal)0.5 * a1);
   const TcVec psi = value - e * tc_compress(second, value);
   segments->alpha = tc_expand(thick, 1 - e, segments->alpha);
   segments->w0 = tc_expand(thick, 1 - psi, segments->w0);
@@ -209,11 +217,9 @@ TC_FIT_MOMENTS(one, ONE)
 
 /* T > 1, as deep_moments() of segment.c. */
 TC_INLINE TcLaneMoments tc_moments_thick(TcVec a, TcVec a1) {
-  const TcVec zero = tc_set(0), b = a1 - a, skip = tc_set(TC_SPECIAL_ROWS);
-  const TcMask rises = tc_le(zero, b);
-  const TcVec first = tc_select(rises, zero, tc_set(TC_MILLS_ROWS)),
-              rows = tc_select(rises, tc_set(TC_MILLS_ROWS), tc_set(TC_DAWSON_ROWS));
-  const TcVec r = tc_sqrt(tc_select(rises, b, -8 * b)), near = 1 / (r + a), far = 1 / (r + a1),
+  const TcVec zero = tc_set(0), skip = tc_set(TC_SPECIAL_ROWS);
+  const TcThick thick = tc_thick(a1 - a);
+  const TcVec first = thick.first, rows = thick.rows, r = thick.r, near = 1 / (r + a), far = 1 / (r + a1),
               e = tc_exp(-0.5 * a - 0.5 * a1);
   const TcVec f = tc_special(first, rows, r * near) * near, g = tc_special(first + skip, rows, r * near) * near * near;
   const TcMask seen = tc_gt(e, zero); /* `far` may be infinite where nothing is seen of it */
